@@ -342,6 +342,8 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
         return print_resampled(*mesh, console, figures);
       }
       return print_arrays(s, console, figures);
+    case InputKind::kCells:
+      return print_arrays(s, console, figures);
     case InputKind::kPolygons:
     case InputKind::kNetwork:
       if (is_network(s, options)) return print_network(summarize_interfaces(options), console, figures);

@@ -100,9 +100,9 @@ std::string site_name(const RectilinearGrid& grid, std::size_t site) {
 
 /// A hint at what may be wrong with fractions that have this sum: their greatest value shows another scale,
 /// such as 255 or percent.
-std::string scale_hint(const MultiMaterialData& data) {
+std::string scale_hint(const Fractions& fractions) {
   float greatest = 0;
-  for (const auto& values : data.fractions) {
+  for (const auto& values : fractions) {
     for (const float v : values) greatest = std::max(greatest, v);
   }
   if (greatest > 0.5f && greatest < 2) return {};
@@ -113,22 +113,28 @@ std::string scale_hint(const MultiMaterialData& data) {
 
 void MultiMaterialData::check() const {
   check_nodes(source, grid);
-  const std::size_t count = grid.site_count();
+  if (!labels.empty()) check_labels(*this);
+  check_fractions(source, materials, fractions, !labels.empty(), grid.site_count());
+  for (const Field& field : fields) check_field(source, field, grid.site_count());
+}
+
+void check_fractions(const std::string& source, const IdVector<MaterialId, std::string>& materials,
+                     const Fractions& fractions, bool has_labels, std::size_t sites) {
   if (materials.empty()) fail("{}: expected at least one material, found none", source);
-  if (labels.empty() && fractions.size() != materials.size()) {
+  if (!has_labels && fractions.size() != materials.size()) {
     fail("{}: expected volume fractions of {} materials, found {}", source, materials.size(),
          fractions.size());
   }
-  if (!labels.empty()) check_labels(*this);
   for (MaterialId m(0); m.value < fractions.size(); ++m.value)
-    check_array(source, materials[m], fractions[m], count);
-  for (const Field& field : fields) {
-    const std::size_t expected = count * static_cast<std::size_t>(field.components);
-    const auto check = [&](const auto& values) { check_array(source, field.name, values, expected); };
-    if (!field.per_material()) field.values.visit(check);
-    for (const auto& values : field.material_values) {
-      if (!values.empty()) values.visit(check);
-    }
+    check_array(source, materials[m], fractions[m], sites);
+}
+
+void check_field(const std::string& source, const Field& field, std::size_t sites) {
+  const std::size_t expected = sites * static_cast<std::size_t>(field.components);
+  const auto check = [&](const auto& values) { check_array(source, field.name, values, expected); };
+  if (!field.per_material()) field.values.visit(check);
+  for (const auto& values : field.material_values) {
+    if (!values.empty()) values.visit(check);
   }
 }
 
@@ -151,10 +157,18 @@ IdVector<MaterialId, double> MultiMaterialData::volumes() const {
 
 void MultiMaterialData::normalise(double tolerance) {
   if (!labels.empty()) return;
-  report = {};
-  const std::size_t count = grid.site_count();
+  report = normalise_fractions(
+      source, materials, [this](std::size_t site) { return site_name(grid, site); }, fractions, tolerance);
+}
+
+FractionReport normalise_fractions(const std::string& source,
+                                   const IdVector<MaterialId, std::string>& materials,
+                                   const std::function<std::string(std::size_t)>& site_name,
+                                   Fractions& fractions, double tolerance) {
+  FractionReport report;
+  const std::size_t count = fractions.empty() ? 0 : fractions[MaterialId(0)].size();
   bool first = true;
-  const auto at = [this](MaterialId m, std::size_t site) { return std::as_const(fractions)[m][site]; };
+  const auto at = [&](MaterialId m, std::size_t site) { return std::as_const(fractions)[m][site]; };
   // Only values that change are written, since the array may be borrowed.
   const auto set = [&](MaterialId m, std::size_t site, float value) {
     if (std::bit_cast<std::uint32_t>(at(m, site)) != std::bit_cast<std::uint32_t>(value))
@@ -166,7 +180,7 @@ void MultiMaterialData::normalise(double tolerance) {
       const float f = at(m, site);
       if (!std::isfinite(f)) {
         fail("{}: volume fraction of '{}': expected a number in [0, 1], found {} in {}", source, materials[m],
-             f, site_name(grid, site));
+             f, site_name(site));
       }
       sum += static_cast<double>(f);
       if (f < 0) ++report.negative;
@@ -178,7 +192,7 @@ void MultiMaterialData::normalise(double tolerance) {
     first = false;
     if (!(std::abs(sum - 1) <= tolerance)) {
       fail("{}: volume fractions: expected a sum of 1 within {}, found {:.6g} in {}{}", source, tolerance,
-           sum, site_name(grid, site), scale_hint(*this));
+           sum, site_name(site), scale_hint(fractions));
     }
     double kept = 0;
     MaterialId sole;
@@ -188,7 +202,7 @@ void MultiMaterialData::normalise(double tolerance) {
       kept += static_cast<double>(f);
     }
     if (!(kept > 0)) {
-      fail("{}: volume fractions: expected a material, found none in {}", source, site_name(grid, site));
+      fail("{}: volume fractions: expected a material, found none in {}", source, site_name(site));
     }
     if (std::abs(kept - 1) <= static_cast<double>(kFractionTrace)) {
       // A material that is left alone fills the cell: the others were traces.
@@ -199,6 +213,7 @@ void MultiMaterialData::normalise(double tolerance) {
     for (MaterialId m(0); m.value < fractions.size(); ++m.value)
       set(m, site, static_cast<float>(static_cast<double>(at(m, site)) / kept));
   }
+  return report;
 }
 
 }  // namespace adamas::inline core

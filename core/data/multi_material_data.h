@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,25 @@ struct FractionReport {
   double step = 0;  ///< difference of successive stored fractions; 0 where they are no integers
 };
 
+/// Volume fractions in [0, 1] per material and site: `fractions[m][site]`.
+using Fractions = IdVector<MaterialId, SiteArray<float>>;
+
+/// Sets negative fractions and traces to zero and scales each site to 1; returns what was found. Throws
+/// Error, naming the source, at NaN, at sites whose fractions are all zero, and where sums are off by more
+/// than `tolerance`. `site_name`: the name of a site in messages.
+FractionReport normalise_fractions(const std::string& source,
+                                   const IdVector<MaterialId, std::string>& materials,
+                                   const std::function<std::string(std::size_t)>& site_name,
+                                   Fractions& fractions, double tolerance = 0.05);
+
+/// Throws Error, naming the source and the array, unless fractions, where there are any, are those of all
+/// materials, have one finite value per site, and there is a material.
+void check_fractions(const std::string& source, const IdVector<MaterialId, std::string>& materials,
+                     const Fractions& fractions, bool has_labels, std::size_t sites);
+/// Throws Error, naming the source and the array, unless all arrays of a field have a finite value per
+/// component and site.
+void check_field(const std::string& source, const Field& field, std::size_t sites);
+
 /// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a
 /// label per site, and fields. Its arrays may be borrowed from an owner that outlives it.
 struct MultiMaterialData {
@@ -47,7 +67,7 @@ struct MultiMaterialData {
   RectilinearGrid grid;
   IdVector<MaterialId, std::string> materials;
   /// `fractions[m][site]` in [0, 1], adding up to 1 at each site; empty where `labels` is given.
-  IdVector<MaterialId, SiteArray<float>> fractions;
+  Fractions fractions;
   /// Index of the one material at each site; empty where `fractions` is given.
   LabelArray labels;
   std::vector<Field> fields;
@@ -56,9 +76,7 @@ struct MultiMaterialData {
   [[nodiscard]] float fraction(MaterialId m, std::size_t site) const {
     return labels.empty() ? fractions[m][site] : (labels[site] == m.value ? 1.0f : 0.0f);
   }
-  /// Sets negative fractions and traces to zero and scales each site to 1; fills `report`. Throws Error,
-  /// naming the source, at NaN, at sites whose fractions are all zero, and where sums are off by more than
-  /// `tolerance`.
+  /// Does what normalise_fractions() does, and fills `report`.
   void normalise(double tolerance = 0.05);
   /// The volume of each material, as the fractions or labels say, in the cube of the unit of length.
   [[nodiscard]] IdVector<MaterialId, double> volumes() const;

@@ -81,10 +81,10 @@ std::vector<Part> join_axes(const std::string& source, std::vector<Part> parts) 
   return result;
 }
 
-Field& field_for(const Part& part, MultiMaterialData& data) {
+Field& field_for(const Part& part, std::size_t materials, std::vector<Field>& fields) {
   const std::string name = plain_name(part.name.name);
   if (part.name.material) {
-    for (Field& field : data.fields) {
+    for (Field& field : fields) {
       if (field.per_material() && plain_name(field.name) == name && field.components == part.components &&
           field.material_values[MaterialId(*part.name.material)].empty()) {
         return field;
@@ -95,17 +95,17 @@ Field& field_for(const Part& part, MultiMaterialData& data) {
   field.name = part.name.name;
   field.unit = part.name.unit;
   field.components = part.components;
-  if (part.name.material) field.material_values.resize(data.materials.size());
-  data.fields.push_back(std::move(field));
-  return data.fields.back();
+  if (part.name.material) field.material_values.resize(materials);
+  fields.push_back(std::move(field));
+  return fields.back();
 }
 
 /// Throws Error where two fields have one name: fields are asked for by name, so the second could never be
 /// found.
-void check_names(const MultiMaterialData& data) {
+void check_names(const std::string& source, const std::vector<Field>& fields) {
   std::set<std::string> names;
-  for (const Field& field : data.fields) {
-    if (!names.insert(field.name).second) fail_twice(data.source, field.name);
+  for (const Field& field : fields) {
+    if (!names.insert(field.name).second) fail_twice(source, field.name);
   }
 }
 
@@ -127,33 +127,43 @@ std::vector<T> cropped(const std::vector<T>& values, const RectilinearGrid& grid
 
 }  // namespace
 
-void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data) {
+std::vector<Field> assemble_fields(const std::string& source,
+                                   const IdVector<MaterialId, std::string>& materials,
+                                   std::vector<FieldArray> arrays) {
   std::vector<Part> parts;
-  for (GridArray& array : arrays) {
-    Part part{parse_field_name(array.name, data.materials), array.components, {}};
+  for (FieldArray& array : arrays) {
+    Part part{parse_field_name(array.name, materials), array.components, std::move(array.values)};
     if (array.components != 1 && part.name.axis) {
       part.name.name = part.name.name_with_axis;
       part.name.axis.reset();
     }
-    const RectilinearGrid from{data.grid.nodes, array.centering};
-    const Centering to = data.grid.centering;
-    part.values = array.take_field();
-    if (to != from.centering) {
-      part.values.visit([&](auto& values) {
-        values = average_to(to, from, static_cast<std::size_t>(array.components), values.own());
-      });
-    }
     parts.push_back(std::move(part));
   }
-  for (Part& part : join_axes(data.source, std::move(parts))) {
-    Field& field = field_for(part, data);
+  std::vector<Field> fields;
+  for (Part& part : join_axes(source, std::move(parts))) {
+    Field& field = field_for(part, materials.size(), fields);
     if (part.name.material) {
       field.material_values[MaterialId(*part.name.material)] = std::move(part.values);
     } else {
       field.values = std::move(part.values);
     }
   }
-  check_names(data);
+  check_names(source, fields);
+  return fields;
+}
+
+void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data) {
+  std::vector<FieldArray> moved;
+  for (GridArray& array : arrays) {
+    const RectilinearGrid from{data.grid.nodes, array.centering};
+    const Centering to = data.grid.centering;
+    FieldArray& result = moved.emplace_back(FieldArray{array.name, array.components, array.take_field()});
+    if (to == from.centering) continue;
+    result.values.visit([&](auto& values) {
+      values = average_to(to, from, static_cast<std::size_t>(array.components), values.own());
+    });
+  }
+  data.fields = assemble_fields(data.source, data.materials, std::move(moved));
 }
 
 void make_intensive(const std::string& name, MultiMaterialData& data) {

@@ -8,9 +8,21 @@
 
 namespace adamas::io {
 
-/// Turns arrays on `data.grid`'s nodes into fields of the data by their names (parse_field_name): joins the
-/// pieces of a field per material and the three parts of a vector, and moves values to the data's centering.
-/// Throws Error if two fields have one name.
+/// An array of values that becomes a field or a part of one.
+struct FieldArray {
+  std::string name;
+  int components = 1;
+  FieldValues values;
+};
+
+/// Turns arrays on the same sites into fields by their names (parse_field_name): joins the pieces of a field
+/// per material and the three parts of a vector. Throws Error if two fields have one name.
+std::vector<Field> assemble_fields(const std::string& source,
+                                   const IdVector<MaterialId, std::string>& materials,
+                                   std::vector<FieldArray> arrays);
+
+/// Sets the data's fields to those of arrays on `data.grid`'s nodes, as assemble_fields() does; values are
+/// moved to the data's centering.
 void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data);
 
 /// Divides amounts per cell by the volume of their material in the cell. Throws Error if no field has that

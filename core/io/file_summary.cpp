@@ -7,11 +7,13 @@
 
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
+#include "core/base/error.h"
 #include "core/io/array_names.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
+#include "core/io/mesh_file.h"
 #include "core/io/polygon_soup.h"
 #include "core/io/unstructured_mesh_io.h"
 
@@ -57,6 +59,18 @@ void set_grid_box(const GridFile& file, FileSummary& summary) {
   summary.origin = file.aslant->origin + nodes.min.x * a + nodes.min.y * b + nodes.min.z * c;
 }
 
+void add_arrays(std::vector<GridArray> arrays, FileSummary& summary) {
+  for (const GridArray& array : arrays) {
+    ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
+                      array.components};
+    item.fraction_of = fraction_material(array.name);
+    std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
+    if (item.min <= item.max)
+      std::tie(item.min, item.max) = std::minmax({array.value(item.min), array.value(item.max)});
+    summary.arrays.push_back(std::move(item));
+  }
+}
+
 FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Centering> wanted,
                            Centering otherwise, const RawVolume* raw) {
   GridFile file = read_grid_file(path, {.raw = raw});
@@ -73,15 +87,18 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   if (summary.points > 0) set_grid_box(file, summary);
   summary.space = file.space;
   summary.remark = file.remark;
-  for (const GridArray& array : file.arrays) {
-    ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
-                      array.components};
-    item.fraction_of = fraction_material(array.name);
-    std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
-    if (item.min <= item.max)
-      std::tie(item.min, item.max) = std::minmax({array.value(item.min), array.value(item.max)});
-    summary.arrays.push_back(std::move(item));
-  }
+  add_arrays(std::move(file.arrays), summary);
+  return summary;
+}
+
+FileSummary summarize_cells(const std::filesystem::path& path) {
+  MeshFile file = read_mesh_file(path);
+  FileSummary summary;
+  summary.kind = file.kind;
+  set_points(file.points, summary);
+  summary.cells = file.cell_ends.size();
+  summary.remark = file.remark;
+  add_arrays(std::move(file.arrays), summary);
   return summary;
 }
 
@@ -117,8 +134,16 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
   FileSummary summary;
   switch (kind_by_format(path)) {
     case InputKind::kMesh:
+      try {
+        return summarize_mesh(path);
+      } catch (const Error&) {
+        // It may have other cells than tetrahedra; other faults are found again.
+        return summarize_cells(path);
+      }
     case InputKind::kPolygons:
       return summarize_mesh(path);
+    case InputKind::kCells:
+      return summarize_cells(path);
     case InputKind::kNetwork: {
       const InterfaceMesh mesh = read_interface_mesh(path);
       summary.kind = is_network_file(path) ? "labelled network" : "interfaces";

@@ -9,20 +9,9 @@
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
+#include "core/io/sent_grids.h"
 
 namespace adamas::io {
-
-template <>
-inline constexpr auto kSentMembers<GridArray> = std::tuple{&GridArray::name,
-                                                           &GridArray::type,
-                                                           &GridArray::centering,
-                                                           &GridArray::components,
-                                                           &GridArray::component_names,
-                                                           &GridArray::values};
-template <>
-inline constexpr auto kSentMembers<GridFile> =
-    std::tuple{&GridFile::kind,  &GridFile::nodes,  &GridFile::arrays, &GridFile::material_names,
-               &GridFile::faces, &GridFile::aslant, &GridFile::space};
 
 namespace {
 
@@ -41,16 +30,6 @@ void check_sizes(const std::string& name, const GridFile& file) {
   }
 }
 
-/// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold
-/// all characters.
-void show_names(GridFile& file) {
-  for (GridArray& array : file.arrays) {
-    array.name = visible_text(array.name);
-    for (std::string& name : array.component_names) name = visible_text(name);
-  }
-  for (std::string& name : file.material_names) name = visible_text(name);
-}
-
 GridFile read_by_format(const std::filesystem::path& path, const GridReading& reading) {
   if (reading.raw != nullptr && find_format_by_name(path) == nullptr)
     return grid_of(raw_image(path, *reading.raw), path, reading);
@@ -63,6 +42,14 @@ GridFile read_by_format(const std::filesystem::path& path, const GridReading& re
 }
 
 }  // namespace
+
+void show_names(std::vector<GridArray>& arrays, std::vector<std::string>& material_names) {
+  for (GridArray& array : arrays) {
+    array.name = visible_text(array.name);
+    for (std::string& name : array.component_names) name = visible_text(name);
+  }
+  for (std::string& name : material_names) name = visible_text(name);
+}
 
 void interleave(GridArray& array) {
   if (array.components == 1) return;
@@ -122,7 +109,7 @@ std::vector<float> GridArray::take_floats() {
   return result;
 }
 
-std::string GridFile::array_names() const {
+std::string names_of(const std::vector<GridArray>& arrays) {
   std::string names;
   for (const GridArray& array : arrays) names += (names.empty() ? "'" : ", '") + array.name + "'";
   return names.empty() ? "no array" : names;
@@ -144,7 +131,7 @@ GridFile read_hdf5_by_library(const std::filesystem::path& path) {
 GridFile read_grid_file(const std::filesystem::path& path, const GridReading& reading) {
   check_input_file(path);
   GridFile file = read_by_format(path, reading);
-  show_names(file);
+  show_names(file.arrays, file.material_names);
   check_sizes(path.string(), file);
   return file;
 }

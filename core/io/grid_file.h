@@ -68,6 +68,9 @@ struct GridArray {
   [[nodiscard]] FieldValues take_field();
 };
 
+/// The names of arrays, for messages: "'a', 'b'".
+std::string names_of(const std::vector<GridArray>& arrays);
+
 /// Reorders numbers from component-major to site-major order.
 void interleave(GridArray& array);
 
@@ -92,8 +95,8 @@ struct GridFile {
 
   [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 
-  /// The names of all arrays, for messages: "'a', 'b'".
-  [[nodiscard]] std::string array_names() const;
+  /// The names of all arrays, for messages.
+  [[nodiscard]] std::string array_names() const { return names_of(arrays); }
 };
 
 /// What the caller of read_grid_file knows.

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/io/file_handle.h"
 #include "core/io/input_file.h"
+#include "core/io/mesh_file.h"
 #include "core/io/network_ply.h"
 
 /// Every format, one per line, in the order in which they are listed and tried.
@@ -23,6 +24,7 @@
   FORMAT(png_format)                 \
   FORMAT(vtk_picture_format)         \
   FORMAT(vtu_format)                 \
+  FORMAT(cells_format)               \
   FORMAT(vtp_format)                 \
   FORMAT(network_format)             \
   FORMAT(surface_format)
@@ -99,7 +101,8 @@ const InputFormat* find_input_format(const std::filesystem::path& path) {
 InputKind kind_by_format(const std::filesystem::path& path) {
   const InputFormat* format = find_format_by_name(path);
   if (format == nullptr) return InputKind::kGrid;
-  return is_network_ply(path) ? InputKind::kNetwork : format->kind;
+  if (is_network_ply(path)) return InputKind::kNetwork;
+  return is_legacy_mesh(path) ? InputKind::kCells : format->kind;
 }
 
 const InputFormat& find_volume_format(const std::filesystem::path& path) {

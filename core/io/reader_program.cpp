@@ -38,6 +38,8 @@ void run_reader(const ReaderRequest& request, ByteSink& sink) {
       return send_grid(request, sink);
     case LibraryReader::kMesh:
       return send_mesh(request, sink);
+    case LibraryReader::kCells:
+      return send_cells(request, sink);
     case LibraryReader::kPolygons:
       return send_polygons(request, sink);
     case LibraryReader::kGridVolume:

@@ -19,6 +19,7 @@ enum class LibraryReader : std::uint8_t {
   kGrid,         ///< a grid file by VTK or libtiff
   kHdf5Grid,     ///< all numeric data sets of a file by HDF5
   kMesh,         ///< .vtu or .vtp by VTK
+  kCells,        ///< the cells of a mesh by VTK
   kPolygons,     ///< a surface by CGAL
   kGridVolume,   ///< a volume on a grid by VTK
   kHdf5Volume,   ///< a volume by HDF5
@@ -78,6 +79,7 @@ int run_reader_program();
 /// The readers, which run in adamas-reader. Each is in the file of the function that receives its data.
 void send_grid(const ReaderRequest& request, ByteSink& sink);
 void send_mesh(const ReaderRequest& request, ByteSink& sink);
+void send_cells(const ReaderRequest& request, ByteSink& sink);
 void send_polygons(const ReaderRequest& request, ByteSink& sink);
 void send_grid_volume(const ReaderRequest& request, ByteSink& sink);
 void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink);

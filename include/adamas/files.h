@@ -29,6 +29,7 @@ namespace adamas ADAMAS_API {
 enum class InputKind : std::uint8_t {
   kGrid,      ///< data on a grid, an image or a volume
   kMesh,      ///< tetrahedra, or a saved hierarchy
+  kCells,     ///< the cells of a simulation: polyhedra of any kind
   kPolygons,  ///< polygons or lines, which may have materials on both sides
   kNetwork,   ///< triangles between labelled regions
   kSurface    ///< polygons without materials

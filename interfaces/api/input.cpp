@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "adamas/text.h"
 #include "core/base/notes.h"
@@ -10,6 +12,8 @@
 #include "core/geometry/length_limits.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/input/grid_source.h"
+#include "interfaces/input/mesh_source.h"
+#include "interfaces/mesh_reconstruction/mesh_interfaces.h"
 #include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/mending.h"
 
@@ -117,10 +121,11 @@ void check_reconstruction(const ReconstructionOptions& options, const MultiMater
   check_range(options.fractions);
 }
 
-void refuse_reconstruction(const ReconstructionOptions& options) {
-  if (options.smooth_labels) wrong_usage("--smooth-labels: expected labels as INPUT, found given interfaces");
+void refuse_reconstruction(const ReconstructionOptions& options, const char* found) {
+  if (options.smooth_labels)
+    wrong_usage("--smooth-labels: expected labels on a grid as INPUT, found {}", found);
   if (const std::string option = options.fractions.option(); !option.empty())
-    wrong_usage("{}: expected volume fractions as INPUT, found given interfaces", option);
+    wrong_usage("{}: expected volume fractions on a grid as INPUT, found {}", option, found);
 }
 
 }  // namespace interfaces
@@ -138,6 +143,22 @@ Input::Contents::Contents(std::unique_ptr<MultiMaterialData> taken)
       materials(data->materials.begin(), data->materials.end()),
       fields(describe(facts.fields)) {}
 
+Input::Contents::Contents(std::unique_ptr<MeshData> taken)
+    : cells(std::move(taken)), facts{cells->source, cells->mesh.box(), {}, 0, !cells->labels.empty()} {
+  std::size_t offset = 0;
+  for (const MeshField& field : cells->fields) {
+    facts.fields.push_back({field.name, field.unit, field.components, offset, 0, 0});
+    offset += static_cast<std::size_t>(field.components);
+  }
+  fields = describe(facts.fields);
+  const IdVector<MaterialId, std::string> names = materials_with_outside(*cells);
+  materials.assign(names.begin(), names.end());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t cell = 0; cell < cells->mesh.cell_count(); ++cell)
+    least = std::min(least, cells->mesh.cell_volume(cell));
+  facts.voxel = std::cbrt(least);
+}
+
 Input::Contents::Contents(InterfaceMesh given, const Box3& domain, const MendingOptions& how,
                           std::unique_ptr<MultiMaterialData> with)
     : data(std::move(with)),
@@ -152,6 +173,10 @@ Input::Contents::Contents(InterfaceMesh given, const Box3& domain, const Mending
 }
 
 ResamplingSource Input::Contents::source(const ReconstructionOptions& options, Progress& progress) const {
+  if (cells) {
+    refuse_reconstruction(options, "data on a mesh");
+    return make_cells_source(*cells, progress);
+  }
   if (!mesh) {
     check_reconstruction(options, *data);
     return make_grid_source(*data, options, progress);
@@ -163,6 +188,7 @@ ResamplingSource Input::Contents::source(const ReconstructionOptions& options, P
 }
 
 ResamplingSource Input::Contents::take_source(const ReconstructionOptions& options, Progress& progress) {
+  if (cells) return source(options, progress);
   if (!mesh) {
     ResamplingSource made = source(options, progress);
     if (data->labels.empty() && data->fields.empty()) {
@@ -202,7 +228,8 @@ const std::vector<std::string>& Input::materials() const { return contents_->mat
 const std::vector<FieldDescription>& Input::fields() const { return contents_->fields; }
 double Input::voxel() const { return contents_->facts.voxel; }
 const std::string& Input::source() const {
-  return contents_->mesh ? contents_->mesh->source : contents_->data->source;
+  if (contents_->mesh) return contents_->mesh->source;
+  return contents_->cells ? contents_->cells->source : contents_->data->source;
 }
 bool Input::has_labels() const { return contents_->facts.has_labels; }
 bool Input::has_given_interfaces() const { return contents_->mesh.has_value(); }

@@ -8,6 +8,7 @@
 #include "adamas/fractions.h"
 #include "adamas/input.h"
 #include "core/data/interface_mesh.h"
+#include "core/data/mesh_data.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/api/error_targets.h"
 #include "interfaces/input/resampling_source.h"
@@ -18,7 +19,8 @@ namespace adamas {
 
 /// The implementation of an Input.
 struct Input::Contents {
-  std::unique_ptr<MultiMaterialData> data;  ///< null if the input is only interfaces
+  std::unique_ptr<MultiMaterialData> data;  ///< null if the input is only interfaces, or a mesh
+  std::unique_ptr<MeshData> cells;          ///< null unless the input is data on a mesh
   /// The integrals over the materials of data whose fractions have been given up; else empty.
   IdVector<MaterialId, interfaces::MaterialIntegral> integrals;
   std::optional<InterfaceMesh> mesh;  ///< given interfaces before mending
@@ -29,6 +31,8 @@ struct Input::Contents {
 
   /// Makes an input of data on a grid.
   explicit Contents(std::unique_ptr<MultiMaterialData> taken);
+  /// Makes an input of data on a mesh.
+  explicit Contents(std::unique_ptr<MeshData> taken);
   /// Makes an input of given interfaces in a domain, with or without data on a grid, which need no materials.
   /// Throws Error if no interface is in the domain.
   Contents(InterfaceMesh given, const Box3& domain, const MendingOptions& how,
@@ -51,8 +55,8 @@ namespace interfaces {
 std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields);
 /// Throws Error where the options are of labels or of volume fractions, and the data have none.
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data);
-/// Throws Error if reconstruction options are set, since the interfaces are given.
-void refuse_reconstruction(const ReconstructionOptions& options);
+/// Throws Error if reconstruction options are set, which are for data on a grid. `found`: what the input is.
+void refuse_reconstruction(const ReconstructionOptions& options, const char* found = "given interfaces");
 
 }  // namespace interfaces
 

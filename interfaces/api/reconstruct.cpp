@@ -7,7 +7,9 @@
 #include "interfaces/api/input.h"
 #include "interfaces/api/interface_areas.h"
 #include "interfaces/api/simplify.h"
+#include "interfaces/input/mesh_source.h"
 #include "interfaces/network/interface_network.h"
+#include "interfaces/network/network_measures.h"
 #include "interfaces/reconstruction/dispersed_volume.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
@@ -92,12 +94,33 @@ ReconstructedInterfaces take_given(const ResamplingSource& source, const Reconst
   return result;
 }
 
+ReconstructedInterfaces reconstruct_cells(const MeshData& data, const ReconstructOptions& options,
+                                          Progress& progress) {
+  refuse_reconstruction({.smooth_labels = options.smooth_labels, .fractions = options.fractions},
+                        "data on a mesh");
+  MeshReconstruction found = reconstruct_mesh(data, progress);
+  const CellAgreement agreement = found.agreement.cells;
+  const ResamplingSource source = make_cells_source(data, std::move(found), progress);
+  ReconstructedInterfaces result = take_given(source, options, progress);
+  const NetworkMeasures measures = measure_network(*source.network, source.box, source.materials.size());
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
+    result.materials[m.value].volume_input = source.volumes[m];
+    result.materials[m.value].volume_reconstructed = measures.volumes[m];
+    if (source.volumes[m] > 0 && !(measures.volumes[m] > 0))
+      result.lost_materials.push_back({m.value, source.volumes[m], false});
+  }
+  result.fractions = source.findings;
+  result.agreement = agreement;
+  return result;
+}
+
 }  // namespace
 
 ReconstructedInterfaces reconstruct(Input input, const ReconstructOptions& options, Progress& progress) {
   const LoopProgress loops(progress);
   check(options.simplify, input);
   const std::shared_ptr<Input::Contents> contents = std::move(input).release();
+  if (contents->cells) return reconstruct_cells(*contents->cells, options, progress);
   if (!contents->mesh) return reconstruct_grid(*contents->data, options, progress);
   const ReconstructionOptions how{.smooth_labels = options.smooth_labels, .fractions = options.fractions};
   return take_given(

@@ -14,6 +14,7 @@
 #include "interfaces/reconstruction/label_runs.h"
 #include "interfaces/reconstruction/material_lattice.h"
 #include "interfaces/reconstruction/site_values.h"
+#include "interfaces/reconstruction/tetrahedron_shares.h"
 
 namespace adamas::interfaces {
 
@@ -92,11 +93,7 @@ class LabelLattice {
   };
   using CellMaterials = std::vector<CellMaterial>;
   void find_materials(const Index& cell, CellMaterials& found) const;
-  /// A material with values at the corners of a tetrahedron.
-  struct Candidate {
-    std::uint16_t number;
-    Values values;
-  };
+  using Candidate = CornerValues;
   /// Finds the materials that may own a part of a tetrahedron whose corners have several owners, ascending by
   /// number. If two materials own the corners, others are left out that are surely below one of them.
   /// `corners`: the numbers of its corners in the cell.

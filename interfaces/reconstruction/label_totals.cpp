@@ -12,14 +12,14 @@
 
 #include "core/base/parallel.h"
 #include "core/base/repeated_sum.h"
-#include "interfaces/reconstruction/cut_volumes.h"
+#include "interfaces/reconstruction/tetrahedron_shares.h"
 
 namespace adamas::interfaces {
 
 namespace {
 
 using Index = LabelLattice::Index;
-using Candidates = std::vector<LabelLattice::Candidate>;
+using Candidates = std::vector<CornerValues>;
 
 /// These are the constants of close_totals().
 constexpr int kMostRounds = 30;
@@ -66,64 +66,21 @@ void add_parts(std::size_t parts, Sums& all, Measure&& measure) {
   }
 }
 
-/// Measures the parts of tetrahedra that materials own.
-class TetrahedronMeasure {
- public:
-  /// Adds the parts of a tetrahedron of this volume. `share(candidate, corner)`: the part of an offset by
-  /// which a value moves.
-  template <class Share>
-  void measure(const Candidates& candidates, double volume, bool growth, Share&& share, Sums& sums) {
-    const std::size_t count = candidates.size();
-    if (count == 2) {
-      const PositivePart found = positive_part(difference(candidates[0], candidates[1]));
-      sums.volumes[candidates[0].number] += volume * found.volume;
-      sums.volumes[candidates[1].number] += volume * (1 - found.volume);
-      if (growth) add_growth(candidates[0], candidates[1], volume, found, share, sums);
-      return;
-    }
-    // For each pair, the region where both are above all others is divided between the two.
-    double rest = 1;
-    for (std::size_t m = 0; m + 1 < count; ++m) {
-      double own = 0;
-      for (std::size_t n = growth ? m + 1 : count - 1; n < count; ++n) {
-        const PositivePart found = first_of_two(candidates, m, n);
-        own = found.volume;
-        if (growth) add_growth(candidates[m], candidates[n], volume, found, share, sums);
-      }
-      sums.volumes[candidates[m].number] += volume * own;
-      rest -= own;
-    }
-    sums.volumes[candidates.back().number] += volume * rest;
-  }
-
- private:
-  using Candidate = LabelLattice::Candidate;
-
-  static LabelLattice::Values difference(const Candidate& a, const Candidate& b) {
-    return {a.values[0] - b.values[0], a.values[1] - b.values[1], a.values[2] - b.values[2],
-            a.values[3] - b.values[3]};
-  }
-
-  PositivePart first_of_two(const Candidates& candidates, std::size_t m, std::size_t n) {
-    pieces_.assign(1, kWholeTetrahedron);
-    for (std::size_t l = 0; l < candidates.size(); ++l) {
-      if (l != m && l != n) keep_positive(difference(candidates[m], candidates[l]), pieces_, scratch_);
-    }
-    return positive_part_of<true>(pieces_, difference(candidates[m], candidates[n]));
-  }
-
-  template <class Share>
-  static void add_growth(const Candidate& a, const Candidate& b, double volume, const PositivePart& found,
-                         Share&& share, Sums& sums) {
-    double by = 0;
-    for (std::size_t c = 0; c < 4; ++c) {
-      if (found.growth[c] != 0) by += 0.5 * (share(a, c) + share(b, c)) * found.growth[c];
-    }
-    if (by != 0) sums.growth[{a.number, b.number}] += volume * by;
-  }
-
-  std::vector<TetrahedronPiece> pieces_, scratch_;
-};
+/// Adds the parts that materials own of a tetrahedron of this volume. `share(material, corner)`: the part of
+/// an offset by which a value moves.
+template <class Share>
+void add_shares(const Candidates& candidates, double volume, bool growth, Share&& share,
+                TetrahedronShares& shares, Sums& sums) {
+  shares.divide(
+      candidates, growth, [&](std::uint16_t number, double part) { sums.volumes[number] += volume * part; },
+      [&](const CornerValues& a, const CornerValues& b, const std::array<double, 4>& found) {
+        double by = 0;
+        for (std::size_t c = 0; c < 4; ++c) {
+          if (found[c] != 0) by += 0.5 * (share(a, c) + share(b, c)) * found[c];
+        }
+        if (by != 0) sums.growth[{a.number, b.number}] += volume * by;
+      });
+}
 
 class LabelTotals {
  public:
@@ -227,16 +184,16 @@ class LabelTotals {
   Sums measure_all(bool growth) {
     Sums all(lattice_.material_count());
     add_parts(lattice_.points(2) - 1, all, [&](std::size_t k, Sums& sums) {
-      TetrahedronMeasure measure;
+      TetrahedronShares shares;
       for_each_mixed(k, sums, [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
-        measure_cell(cell, numbers, growth, measure, sums);
+        measure_cell(cell, numbers, growth, shares, sums);
       });
     });
     return all;
   }
 
   void measure_cell(const Index& cell, const std::array<std::uint16_t, 8>& numbers, bool growth,
-                    TetrahedronMeasure& measure, Sums& sums) const {
+                    TetrahedronShares& shares, Sums& sums) const {
     thread_local Candidates candidates;
     thread_local LabelLattice::CellMaterials materials;
     const double volume = tetrahedron_volume(cell);
@@ -254,14 +211,14 @@ class LabelTotals {
       } else {
         lattice_.find_candidates(materials, corners, owners, candidates);
       }
-      measure.measure(
+      add_shares(
           candidates, volume, growth,
-          [&](const LabelLattice::Candidate& candidate, std::size_t c) {
+          [&](const CornerValues& candidate, std::size_t c) {
             const std::uint32_t bits = corners[c];
             return lattice_.share({cell[0] + (bits & 1u), cell[1] + (bits >> 1 & 1u), cell[2] + (bits >> 2)},
                                   candidate.number, candidate.values[c]);
           },
-          sums);
+          shares, sums);
     }
   }
 
@@ -331,7 +288,7 @@ class LabelTotals {
     if (uniform_.empty()) count_kinds();
     Sums sums(lattice_.material_count());
     sums.volumes = uniform_;
-    TetrahedronMeasure measure;
+    TetrahedronShares shares;
     const double volume = kinds_.empty() ? 0 : tetrahedron_volume({1, 1, 1});
     Candidates candidates;
     for (const auto& [kind, count] : kinds_) {
@@ -344,12 +301,12 @@ class LabelTotals {
         continue;
       }
       lattice_.find_owners(owners, candidates);
-      measure.measure(
-          candidates, all, growth, [](const auto&, std::size_t) { return 1.0; }, sums);
+      add_shares(
+          candidates, all, growth, [](const auto&, std::size_t) { return 1.0; }, shares, sums);
     }
     constexpr std::size_t kChunk = 1024;
     add_parts((border_.size() + kChunk - 1) / kChunk, sums, [&](std::size_t part, Sums& found) {
-      TetrahedronMeasure own;
+      TetrahedronShares own;
       for (std::size_t n = part * kChunk; n < std::min((part + 1) * kChunk, border_.size()); ++n)
         measure_cell(border_[n].first, border_[n].second, growth, own, found);
     });

@@ -29,7 +29,7 @@ MAY_INCLUDE = {
 # The folders of each module in order: a folder may include those before it.
 FOLDER_ORDER = {
     "core": ["base", "geometry", "distance", "lattice", "data"],
-    "interfaces": ["ownership", "network", "reconstruction", "fields", "input", "hierarchy", "mesh", "cell_errors", "resampling", "selection",
+    "interfaces": ["ownership", "network", "reconstruction", "mesh_reconstruction", "fields", "input", "hierarchy", "mesh", "cell_errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "api", "reference_client", "comparison",
                    "reference_program"],
     "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view"],

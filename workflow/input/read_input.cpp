@@ -14,6 +14,7 @@
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
+#include "core/io/mesh_data_reader.h"
 #include "core/io/multi_material_reader.h"
 #include "interfaces/api/input.h"
 #include "interfaces/network/interface_mesh_check.h"
@@ -33,8 +34,7 @@ namespace {
 constexpr double kMargin = 0.05;
 
 /// Notes repairs of volume fractions, unless they are round-off.
-void note_mended_fractions(const MultiMaterialData& data, Progress& progress) {
-  const FractionReport& r = data.report;
+void note_mended_fractions(const FractionReport& r, const std::string& source, Progress& progress) {
   if (r.renormalised == 0 && r.negative == 0) return;
   std::string what;
   const auto add = [&what](const std::string& text) { what += (what.empty() ? "" : ", ") + text; };
@@ -45,7 +45,25 @@ void note_mended_fractions(const MultiMaterialData& data, Progress& progress) {
   }
   if (r.negative > 0) add(counted(r.negative, "negative fraction") + " set to 0");
   if (r.traces > 0) add(counted(r.traces, "trace") + " below a millionth set to 0");
-  note(progress, "{}: volume fractions were mended: {}", data.source, what);
+  note(progress, "{}: volume fractions were mended: {}", source, what);
+}
+
+/// Returns whether a file has data on the cells of a mesh.
+bool is_mesh(const std::filesystem::path& path) {
+  const InputKind kind = input_kind(path);
+  return kind == InputKind::kCells || (kind == InputKind::kMesh && file_extension(path) == ".vtu");
+}
+
+std::shared_ptr<Input::Contents> load_mesh_data(const InputOptions& options, Progress& progress) {
+  if (const std::string option = options.raw.option(); !option.empty())
+    wrong_usage("{}: expected a file without a header, found {}", option, options.path.string());
+  MaterialDataOptions how = options.data;
+  if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
+  auto data = std::make_unique<MeshData>(read_mesh_data(options.path, how, progress));
+  note_mended_fractions(data->report, data->source, progress);
+  auto contents = std::make_shared<Input::Contents>(std::move(data));
+  contents->facts.name = options.path.string();
+  return contents;
 }
 
 /// Throws where --extensive names no field. Letter case counts as in all other options, although the reader
@@ -257,7 +275,8 @@ MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
   const std::string path = options.path.string();
   switch (input_kind(options.path)) {
     case InputKind::kMesh:
-      fail("{}: expected data on a grid, found a tetrahedral mesh", path);
+    case InputKind::kCells:
+      fail("{}: expected data on a grid, found a mesh", path);
     case InputKind::kPolygons:
     case InputKind::kNetwork:
       fail("{}: expected data on a grid, found interface meshes", path);
@@ -269,7 +288,7 @@ MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
   MultiMaterialData data = read_multi_material_data(options.path, how, progress, raw);
   data.source = input_name(options);
   check_extensive(options, data);
-  note_mended_fractions(data, progress);
+  note_mended_fractions(data.report, data.source, progress);
   return data;
 }
 
@@ -285,6 +304,7 @@ std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progre
   if (options.mending.tolerant || options.mending.gaps)
     wrong_usage("{}: expected given interfaces", options.mending.tolerant ? "--tolerant" : "--weld");
   check_input_file(options.path);
+  if (is_mesh(options.path)) return load_mesh_data(options, progress);
   check_memory_of_headers(options);
   auto data = std::make_unique<MultiMaterialData>(load_data(options, progress));
   check_memory_of_data(options, *data);
@@ -301,6 +321,8 @@ LoadedInput load_input(const InputOptions& options, const ReconstructionOptions&
                        Progress& progress, const InputCheck& check) {
   if (has_given_interfaces(with_main_file(options))) refuse_reconstruction(reconstruction);
   const std::shared_ptr<Input::Contents> contents = load_contents(options, progress);
+  if (contents->cells)
+    fail("{}: expected data on a grid or interfaces, found a mesh", contents->cells->source);
   if (check) check_step([&] { check(contents->facts); });
   LoadedInput input;
   input.source = contents->source(reconstruction, progress);

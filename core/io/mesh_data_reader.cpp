@@ -1,0 +1,147 @@
+#include "core/io/mesh_data_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/io/field_assembly.h"
+#include "core/io/material_arrays.h"
+#include "core/io/mesh_file.h"
+
+namespace adamas::io {
+
+namespace {
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, const MaterialDataOptions& options, Progress& progress)
+      : path_(path), options_(options), progress_(progress) {}
+
+  MeshData run() {
+    progress_.step("read " + path_.filename().string(), 0);
+    file_ = read_mesh_file(path_);
+    data_.source = path_.string();
+    refuse_options();
+    choose_blocks();
+    progress_.step("joining cells", -1);
+    data_.mesh = PolyhedralMesh::make(data_.source, std::move(file_.points), std::move(file_.face_points),
+                                      file_.face_ends, file_.cell_ends);
+    const std::vector<std::string>& names =
+        options_.labels == MeshFile::kBlocks ? file_.blocks : file_.material_names;
+    MaterialArrays arrays(path_, options_, std::move(file_.arrays), names,
+                          [this](const std::string& option, const std::filesystem::path& file) {
+                            return read_other(option, file);
+                          });
+    take_materials(arrays);
+    if (options_.note && !file_.remark.empty()) options_.note(data_.source + ": " + file_.remark);
+    take_fields(arrays.take_fields());
+    progress_.step("check materials", 0.9);
+    data_.normalise();
+    data_.report.step = step_;
+    data_.check();
+    progress_.step("check materials", 1);
+    return std::move(data_);
+  }
+
+ private:
+  void refuse_options() const {
+    if (options_.region) fail("{}: --region: expected data on a grid, found a mesh", data_.source);
+    if (!options_.extensive.empty())
+      fail("{}: --extensive: expected data on a grid, found a mesh", data_.source);
+    if (options_.centering)
+      fail("{}: --{}: expected data on a grid, found a mesh", data_.source,
+           *options_.centering == Centering::kCells ? "cells" : "points");
+  }
+
+  /// Takes the blocks for materials if nothing else says what these are.
+  void choose_blocks() {
+    const bool named = MaterialArrays::name_materials(options_, file_.arrays, file_.material_names);
+    if (file_.blocks.empty() || named) return;
+    options_.labels = MeshFile::kBlocks;
+    if (options_.note)
+      options_.note(
+          fmt::format("{}: no array has volume fractions or labels: its {} blocks are the materials",
+                      data_.source, file_.blocks.size()));
+  }
+
+  GridArray read_other(const std::string& option, const std::filesystem::path& file) {
+    progress_.step("read " + file.filename().string(), 0.5);
+    MeshFile other = read_mesh_file(file);
+    if (other.cell_ends.size() != data_.mesh.cell_count())
+      fail("{}: {}: expected the mesh of {} with {} cells, found {}", file.string(), option, data_.source,
+           data_.mesh.cell_count(), other.cell_ends.size());
+    if (other.arrays.size() != 1)
+      fail("{}: {}: expected a file of one array, found {}", file.string(), option, names_of(other.arrays));
+    return std::move(other.arrays[0]);
+  }
+
+  /// Averages values of points to cells.
+  [[nodiscard]] std::vector<float> of_cells(const std::vector<float>& of_points) const {
+    std::vector<float> result;
+    result.reserve(data_.mesh.cell_count());
+    for (std::size_t c = 0; c < data_.mesh.cell_count(); ++c) {
+      const auto points = data_.mesh.points_of_cell(c);
+      double sum = 0;
+      for (const auto p : points) sum += static_cast<double>(of_points[p]);
+      result.push_back(static_cast<float>(sum / static_cast<double>(points.size())));
+    }
+    return result;
+  }
+
+  void take_materials(MaterialArrays& arrays) {
+    ChosenMaterials chosen = arrays.take_materials();
+    for (std::string& name : chosen.names) data_.materials.push_back(std::move(name));
+    step_ = chosen.step;
+    if (chosen.labels) {
+      if (chosen.centering != Centering::kCells)
+        fail("{}: labels '{}': expected labels of cells, found those of points", data_.source,
+             options_.labels);
+      const auto labels = chosen.labels->index.dense();
+      data_.labels.assign(labels.begin(), labels.end());
+      return;
+    }
+    for (GridArray& array : chosen.fractions) {
+      const Centering centering = array.centering;
+      std::vector<float> values = arrays.take_fractions(array);
+      if (centering == Centering::kPoints) values = of_cells(values);
+      data_.fractions.push_back(std::move(values));
+    }
+    if (chosen.rest)
+      data_.fractions.push_back(MaterialArrays::rest_of(data_.fractions, data_.mesh.cell_count()));
+  }
+
+  void take_fields(std::vector<GridArray> arrays) {
+    for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
+      std::vector<FieldArray> own;
+      for (GridArray& array : arrays) {
+        if (array.centering == centering && array.name != MeshFile::kBlocks)
+          own.push_back({array.name, array.components, array.take_field()});
+      }
+      for (Field& field : assemble_fields(data_.source, data_.materials, std::move(own))) {
+        const auto known = std::ranges::find(data_.fields, field.name, &MeshField::name);
+        if (known == data_.fields.end()) {
+          data_.fields.push_back({std::move(field), centering});
+        } else if (options_.note) {
+          options_.note(fmt::format("{}: field '{}' is taken from cells, and not from points", data_.source,
+                                    field.name));
+        }
+      }
+    }
+  }
+
+  const std::filesystem::path& path_;
+  MaterialDataOptions options_;
+  Progress& progress_;
+  MeshFile file_;
+  double step_ = 0;  // see FractionReport
+  MeshData data_;
+};
+
+}  // namespace
+
+MeshData read_mesh_data(const std::filesystem::path& path, const MaterialDataOptions& options,
+                        Progress& progress) {
+  return Reader(path, options, progress).run();
+}
+
+}  // namespace adamas::io

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/io/framed_bytes.h"
+#include "core/io/grid_file.h"
+
+namespace adamas::io {
+
+template <>
+inline constexpr auto kSentMembers<GridArray> = std::tuple{&GridArray::name,
+                                                           &GridArray::type,
+                                                           &GridArray::centering,
+                                                           &GridArray::components,
+                                                           &GridArray::component_names,
+                                                           &GridArray::values};
+template <>
+inline constexpr auto kSentMembers<GridFile> =
+    std::tuple{&GridFile::kind,  &GridFile::nodes,  &GridFile::arrays, &GridFile::material_names,
+               &GridFile::faces, &GridFile::aslant, &GridFile::space};
+
+/// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold
+/// all characters.
+void show_names(std::vector<GridArray>& arrays, std::vector<std::string>& material_names);
+
+}  // namespace adamas::io

@@ -1,0 +1,555 @@
+#include <fmt/format.h>
+#include <vtkCGNSReader.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataArray.h>
+#include <vtkDataObjectTree.h>
+#include <vtkDataObjectTreeIterator.h>
+#include <vtkDataSet.h>
+#include <vtkDataSetReader.h>
+#include <vtkExodusIIReader.h>
+#include <vtkFieldData.h>
+#include <vtkIdList.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkOpenFOAMReader.h>
+#include <vtkPointData.h>
+#include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLMultiBlockDataReader.h>
+#include <vtkXMLPStructuredGridReader.h>
+#include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLStructuredGridReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <span>
+#include <unordered_map>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/io/grid_numbers.h"
+#include "core/io/input_file.h"
+#include "core/io/mesh_file.h"
+#include "core/io/vtk_arrays.h"
+#include "core/io/vtk_support.h"
+
+namespace adamas::io {
+
+namespace {
+
+using Index = std::uint32_t;
+
+/// The faces of a cell, by the places of its points.
+using FaceTable = std::vector<std::vector<int>>;
+
+/// A kind of cells: how many corners come first among its points, and its faces; cells of higher degree are
+/// taken by their corners.
+struct CellShape {
+  int corners;
+  const FaceTable* faces;
+  bool higher_degree = false;
+};
+
+const FaceTable kTetrahedron{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}};
+const FaceTable kVoxel{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+const FaceTable kHexahedron{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
+                            {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
+const FaceTable kWedge{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
+const FaceTable kPyramid{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+const FaceTable kPentagonalPrism{{0, 4, 3, 2, 1}, {5, 6, 7, 8, 9}, {0, 1, 6, 5}, {1, 2, 7, 6},
+                                 {2, 3, 8, 7},    {3, 4, 9, 8},    {4, 0, 5, 9}};
+const FaceTable kHexagonalPrism{{0, 5, 4, 3, 2, 1}, {6, 7, 8, 9, 10, 11}, {0, 1, 7, 6},   {1, 2, 8, 7},
+                                {2, 3, 9, 8},       {3, 4, 10, 9},        {4, 5, 11, 10}, {5, 0, 6, 11}};
+
+CellShape shape_of(int type) {
+  switch (type) {
+    case VTK_TETRA:
+      return {4, &kTetrahedron};
+    case VTK_VOXEL:
+      return {8, &kVoxel};
+    case VTK_HEXAHEDRON:
+      return {8, &kHexahedron};
+    case VTK_WEDGE:
+      return {6, &kWedge};
+    case VTK_PYRAMID:
+      return {5, &kPyramid};
+    case VTK_PENTAGONAL_PRISM:
+      return {10, &kPentagonalPrism};
+    case VTK_HEXAGONAL_PRISM:
+      return {12, &kHexagonalPrism};
+    case VTK_QUADRATIC_TETRA:
+    case VTK_LAGRANGE_TETRAHEDRON:
+      return {4, &kTetrahedron, true};
+    case VTK_QUADRATIC_HEXAHEDRON:
+    case VTK_TRIQUADRATIC_HEXAHEDRON:
+    case VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON:
+    case VTK_LAGRANGE_HEXAHEDRON:
+      return {8, &kHexahedron, true};
+    case VTK_QUADRATIC_WEDGE:
+    case VTK_QUADRATIC_LINEAR_WEDGE:
+    case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
+    case VTK_LAGRANGE_WEDGE:
+      return {6, &kWedge, true};
+    case VTK_QUADRATIC_PYRAMID:
+    case VTK_TRIQUADRATIC_PYRAMID:
+      return {5, &kPyramid, true};
+    default:
+      return {0, nullptr};
+  }
+}
+
+/// Returns whether cells of a type have no volume: points, lines, and cells of a surface.
+bool is_flat(int type) {
+  switch (type) {
+    case VTK_EMPTY_CELL:
+    case VTK_VERTEX:
+    case VTK_POLY_VERTEX:
+    case VTK_LINE:
+    case VTK_POLY_LINE:
+    case VTK_TRIANGLE:
+    case VTK_TRIANGLE_STRIP:
+    case VTK_POLYGON:
+    case VTK_PIXEL:
+    case VTK_QUAD:
+    case VTK_QUADRATIC_EDGE:
+    case VTK_QUADRATIC_TRIANGLE:
+    case VTK_QUADRATIC_QUAD:
+    case VTK_QUADRATIC_POLYGON:
+    case VTK_QUADRATIC_LINEAR_QUAD:
+    case VTK_BIQUADRATIC_QUAD:
+    case VTK_BIQUADRATIC_TRIANGLE:
+    case VTK_CUBIC_LINE:
+    case VTK_LAGRANGE_CURVE:
+    case VTK_LAGRANGE_TRIANGLE:
+    case VTK_LAGRANGE_QUADRILATERAL:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Gives points at one place, up to round-off, one number.
+class PointMerger {
+ public:
+  /// `tolerance`: points nearer to each other are one.
+  PointMerger(double tolerance, std::vector<Vec3>& points) : cell_(4 * tolerance), points_(points) {}
+
+  Index number(const Vec3& p) {
+    const double reach = 0.25 * cell_;
+    for (const double x : {p.x - reach, p.x + reach}) {
+      for (const double y : {p.y - reach, p.y + reach}) {
+        for (const double z : {p.z - reach, p.z + reach}) {
+          const auto [begin, end] = places_.equal_range(key({x, y, z}));
+          for (auto at = begin; at != end; ++at) {
+            if (distance(points_[at->second], p) <= reach) return at->second;
+          }
+        }
+      }
+    }
+    const auto number = static_cast<Index>(points_.size());
+    places_.emplace(key(p), number);
+    points_.push_back(p);
+    return number;
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t key(const Vec3& p) const {
+    std::uint64_t result = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = cell_ > 0 ? std::floor(p[axis] / cell_) : p[axis];
+      std::uint64_t bits = 0;
+      const double whole = place + 0.0;
+      std::memcpy(&bits, &whole, sizeof bits);
+      result = (result ^ bits) * 0x9e3779b97f4a7c15ull;
+      result ^= result >> 29;
+    }
+    return result;
+  }
+
+  double cell_;
+  std::vector<Vec3>& points_;
+  std::unordered_multimap<std::uint64_t, Index> places_;
+};
+
+/// One data set of a file, with what is taken of it.
+struct Piece {
+  vtkSmartPointer<vtkDataSet> set;
+  std::string block;
+  std::vector<vtkIdType> cells;   ///< those that are taken
+  std::vector<vtkIdType> points;  ///< those that get a new number
+};
+
+/// Collects the cells of the data sets of a file.
+class CellCollector {
+ public:
+  explicit CellCollector(std::string name) : name_(std::move(name)) {}
+
+  void add(vtkDataObject* data, const std::string& block = {}) {
+    if (auto* set = vtkDataSet::SafeDownCast(data)) {
+      if (set->GetNumberOfCells() > 0) pieces_.push_back({set, block, {}, {}});
+      return;
+    }
+    auto* tree = vtkDataObjectTree::SafeDownCast(data);
+    if (tree == nullptr)
+      fail("{}: expected cells of a mesh, found {}", name_, data ? data->GetClassName() : "nothing");
+    const auto each = vtk::TakeSmartPointer(tree->NewTreeIterator());
+    each->TraverseSubTreeOn();
+    each->VisitOnlyLeavesOn();
+    for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem()) {
+      const bool named = each->HasCurrentMetaData() != 0 &&
+                         each->GetCurrentMetaData()->Has(vtkCompositeDataSet::NAME()) != 0;
+      const char* own = named ? each->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()) : nullptr;
+      add(each->GetCurrentDataObject(), own != nullptr ? own : fmt::format("block {}", pieces_.size() + 1));
+    }
+  }
+
+  MeshFile run() {
+    choose_cells();
+    number_points();
+    add_cells();
+    add_arrays();
+    add_blocks();
+    return std::move(file_);
+  }
+
+ private:
+  /// Finds the cells that have a volume and are no copies of those of another piece.
+  void choose_cells() {
+    std::map<int, std::size_t> refused;
+    for (Piece& piece : pieces_) {
+      const vtkUnsignedCharArray* ghosts = piece.set->GetCellGhostArray();
+      for (vtkIdType c = 0; c < piece.set->GetNumberOfCells(); ++c) {
+        constexpr unsigned kLeftOut = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL |
+                                      vtkDataSetAttributes::REFINEDCELL;
+        if (ghosts != nullptr && (const_cast<vtkUnsignedCharArray*>(ghosts)->GetValue(c) & kLeftOut) != 0)
+          continue;
+        const int type = piece.set->GetCellType(c);
+        if (type == VTK_POLYHEDRON || shape_of(type).faces != nullptr) {
+          piece.cells.push_back(c);
+        } else if (is_flat(type)) {
+          ++flat_;
+        } else {
+          ++refused[type];
+        }
+      }
+    }
+    if (!refused.empty()) {
+      fail(
+          "{}: expected tetrahedra, hexahedra, wedges, pyramids, prisms or polyhedra, found {} cells of "
+          "VTK's "
+          "type {}",
+          name_, refused.begin()->second, refused.begin()->first);
+    }
+    std::erase_if(pieces_, [](const Piece& piece) { return piece.cells.empty(); });
+    if (pieces_.empty())
+      fail("{}: expected cells with a volume, found {}", name_, flat_ > 0 ? "those of a surface" : "none");
+  }
+
+  void number_points() {
+    Box3 box;
+    std::size_t count = 0;
+    for (const Piece& piece : pieces_) {
+      count += static_cast<std::size_t>(piece.set->GetNumberOfPoints());
+      std::array<double, 6> bounds{};
+      piece.set->GetBounds(bounds.data());
+      box.extend({bounds[0], bounds[2], bounds[4]});
+      box.extend({bounds[1], bounds[3], bounds[5]});
+    }
+    if (count >= std::numeric_limits<Index>::max())
+      fail("{}: expected fewer than {} points, found {}", name_, std::numeric_limits<Index>::max(), count);
+    // The points of one unstructured grid are apart on purpose.
+    const bool merges = pieces_.size() > 1 || vtkUnstructuredGrid::SafeDownCast(pieces_[0].set) == nullptr;
+    PointMerger merger(kCoincident * box.diagonal(), file_.points);
+    for (Piece& piece : pieces_) {
+      std::vector<Index>& numbers = numbers_.emplace_back();
+      for (vtkIdType p = 0; p < piece.set->GetNumberOfPoints(); ++p) {
+        std::array<double, 3> x{};
+        piece.set->GetPoint(p, x.data());
+        const Vec3 at{x[0], x[1], x[2]};
+        const auto next = static_cast<Index>(file_.points.size());
+        if (merges && is_finite(at)) {
+          numbers.push_back(merger.number(at));
+        } else {
+          numbers.push_back(next);
+          file_.points.push_back(at);
+        }
+        if (numbers.back() == next) piece.points.push_back(p);
+      }
+    }
+  }
+
+  void add_face(const std::vector<Index>& numbers, std::span<const vtkIdType> points) {
+    const std::size_t first = file_.face_points.size();
+    for (const vtkIdType p : points) {
+      if (p < 0 || static_cast<std::size_t>(p) >= numbers.size())
+        fail("{}: expected cells of {} points, found a cell of point {}", name_, numbers.size(), p);
+      const Index number = numbers[static_cast<std::size_t>(p)];
+      // Edges whose ends are one point vanish, and so do faces that become an edge.
+      if (file_.face_points.size() == first || file_.face_points.back() != number)
+        file_.face_points.push_back(number);
+    }
+    while (file_.face_points.size() > first + 1 && file_.face_points.back() == file_.face_points[first])
+      file_.face_points.pop_back();
+    if (file_.face_points.size() < first + 3) {
+      file_.face_points.resize(first);
+      return;
+    }
+    file_.face_ends.push_back(static_cast<Index>(file_.face_points.size()));
+  }
+
+  void add_cells() {
+    const auto ids = vtkSmartPointer<vtkIdList>::New();
+    std::vector<vtkIdType> face;
+    for (std::size_t n = 0; n < pieces_.size(); ++n) {
+      vtkDataSet& set = *pieces_[n].set;
+      auto* unstructured = vtkUnstructuredGrid::SafeDownCast(&set);
+      for (const vtkIdType c : pieces_[n].cells) {
+        const int type = set.GetCellType(c);
+        if (type == VTK_POLYHEDRON) {
+          unstructured->GetFaceStream(c, ids);
+          vtkIdType at = 0;
+          const auto next = [&] { return at < ids->GetNumberOfIds() ? ids->GetId(at++) : -1; };
+          for (vtkIdType faces = next(); faces > 0; --faces) {
+            const vtkIdType size = next();
+            if (size < 0 || size > ids->GetNumberOfIds() - at)
+              fail("{}: expected a polyhedron with its faces, found cell {}", name_, c);
+            face.assign(ids->GetPointer(at), ids->GetPointer(at) + size);
+            at += size;
+            add_face(numbers_[n], face);
+          }
+        } else {
+          const CellShape shape = shape_of(type);
+          set.GetCellPoints(c, ids);
+          if (ids->GetNumberOfIds() < shape.corners)
+            fail("{}: expected a cell of {} points, found {} of cell {}", name_, shape.corners,
+                 ids->GetNumberOfIds(), c);
+          higher_degree_ = higher_degree_ || shape.higher_degree;
+          for (const std::vector<int>& places : *shape.faces) {
+            face.clear();
+            for (const int place : places) face.push_back(ids->GetId(place));
+            add_face(numbers_[n], face);
+          }
+        }
+        file_.cell_ends.push_back(static_cast<Index>(file_.face_ends.size()));
+      }
+    }
+    if (higher_degree_) add_remark("cells of higher degree are taken by their corners");
+    if (flat_ > 0) add_remark(fmt::format("{} cells of surfaces and lines are not read", flat_));
+  }
+
+  void add_remark(const std::string& text) { file_.remark += (file_.remark.empty() ? "" : "; ") + text; }
+
+  static vtkDataSetAttributes& attributes(vtkDataSet& set, Centering centering) {
+    if (centering == Centering::kCells) return *set.GetCellData();
+    return *set.GetPointData();
+  }
+
+  void add_arrays() {
+    for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
+      std::vector<std::string> left_out;
+      const vtkDataSetAttributes& first = attributes(*pieces_[0].set, centering);
+      for (int i = 0; i < const_cast<vtkDataSetAttributes&>(first).GetNumberOfArrays(); ++i) {
+        vtkDataArray* array = const_cast<vtkDataSetAttributes&>(first).GetArray(i);
+        const char* name = array != nullptr ? array->GetName() : nullptr;
+        if (name == nullptr || name == std::string_view("vtkGhostType")) continue;
+        if (!add_array(*array, centering)) left_out.push_back(name);
+      }
+      for (const std::string& name : left_out)
+        add_remark(fmt::format("array '{}', which some blocks have not, is not read", name));
+    }
+    auto* names =
+        vtkStringArray::SafeDownCast(pieces_[0].set->GetFieldData()->GetAbstractArray("material_names"));
+    for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i)
+      file_.material_names.push_back(names->GetValue(i));
+  }
+
+  /// Adds an array if all pieces have it.
+  bool add_array(vtkDataArray& like, Centering centering) {
+    const auto joined = vtk::TakeSmartPointer(like.NewInstance());
+    joined->SetName(like.GetName());
+    joined->SetNumberOfComponents(like.GetNumberOfComponents());
+    for (int c = 0; like.HasAComponentName() && c < like.GetNumberOfComponents(); ++c) {
+      if (like.GetComponentName(c) != nullptr) joined->SetComponentName(c, like.GetComponentName(c));
+    }
+    for (const Piece& piece : pieces_) {
+      vtkDataArray* own = attributes(*piece.set, centering).GetArray(like.GetName());
+      if (own == nullptr || own->GetDataType() != like.GetDataType() ||
+          own->GetNumberOfComponents() != like.GetNumberOfComponents())
+        return false;
+      for (const vtkIdType i : centering == Centering::kCells ? piece.cells : piece.points)
+        joined->InsertNextTuple(i, own);
+    }
+    file_.arrays.push_back(grid_array(*joined, centering));
+    return true;
+  }
+
+  /// Adds the blocks, by the order in which their names come first, as labels of cells.
+  void add_blocks() {
+    std::vector<std::int32_t> block_of_cell;
+    for (const Piece& piece : pieces_) {
+      const auto found = std::ranges::find(file_.blocks, piece.block);
+      const auto number = static_cast<std::int32_t>(found - file_.blocks.begin());
+      if (found == file_.blocks.end()) file_.blocks.push_back(piece.block);
+      block_of_cell.insert(block_of_cell.end(), piece.cells.size(), number);
+    }
+    if (file_.blocks.size() < 2) {
+      file_.blocks.clear();
+      return;
+    }
+    GridArray array;
+    array.name = MeshFile::kBlocks;
+    array.type = "int32";
+    array.centering = Centering::kCells;
+    array.values = std::move(block_of_cell);
+    file_.arrays.push_back(std::move(array));
+  }
+
+  /// Points of different blocks are one if they are nearer than this part of the mesh's diagonal.
+  static constexpr double kCoincident = 1e-10;
+
+  std::string name_;
+  std::vector<Piece> pieces_;
+  std::vector<std::vector<Index>> numbers_;  // of the points of each piece
+  std::size_t flat_ = 0;
+  bool higher_degree_ = false;
+  MeshFile file_;
+};
+
+MeshFile collected(const std::string& name, const char* kind, vtkDataObject* data) {
+  CellCollector collector(name);
+  collector.add(data);
+  MeshFile file = collector.run();
+  file.kind = kind;
+  return file;
+}
+
+template <class Reader>
+MeshFile read_xml(const std::string& name, const char* kind, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<Reader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected a {}, found something else", name, kind);
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  messages.check(name);
+  if (reader->GetErrorCode() != 0) fail("{}: expected a whole file, found a corrupt one", name);
+  return collected(name, kind, reader->GetOutputDataObject(0));
+}
+
+MeshFile read_legacy(const std::string& name, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllColorScalarsOn();
+  reader->ReadAllTCoordsOn();
+  reader->ReadAllFieldsOn();
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  messages.check(name);
+  return collected(name, "legacy VTK mesh", reader->GetOutputDataObject(0));
+}
+
+/// Updates a reader of files with several times to the last one; returns a remark on it.
+std::string update_to_last_time(vtkAlgorithm& reader) {
+  reader.UpdateInformation();
+  vtkInformation& information = *reader.GetOutputInformation(0);
+  auto* const key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
+  const int count = information.Has(key) != 0 ? information.Length(key) : 0;
+  if (count < 2) {
+    reader.Update();
+    return {};
+  }
+  const double last = information.Get(key, count - 1);
+  reader.UpdateTimeStep(last);
+  return fmt::format("of {} times the last one is read, {:g}", count, last);
+}
+
+MeshFile read_openfoam(const std::string& name, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
+  reader->SetFileName(name.c_str());
+  reader->DecomposePolyhedraOff();
+  reader->CreateCellToPointOff();
+  reader->SkipZeroTimeOff();
+  reader->UpdateInformation();
+  reader->DisableAllPatchArrays();
+  reader->SetPatchArrayStatus("internalMesh", 1);
+  const std::string remark = update_to_last_time(*reader);
+  messages.check(name);
+  MeshFile file = collected(name, "OpenFOAM case", reader->GetOutputDataObject(0));
+  file.remark = remark;
+  return file;
+}
+
+MeshFile read_exodus(const std::string& name, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<vtkExodusIIReader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0)
+    fail("{}: expected an ExodusII file, found something else", name);
+  reader->SetFileName(name.c_str());
+  reader->UpdateInformation();
+  for (const int type : {vtkExodusIIReader::ELEM_BLOCK, vtkExodusIIReader::NODAL})
+    reader->SetAllArrayStatus(type, 1);
+  const int steps = reader->GetNumberOfTimeSteps();
+  if (steps > 0) reader->SetTimeStep(steps - 1);
+  reader->Update();
+  messages.check(name);
+  MeshFile file = collected(name, "ExodusII", reader->GetOutputDataObject(0));
+  if (steps > 1) {
+    file.remark += fmt::format("{}of {} times the last one is read", file.remark.empty() ? "" : "; ", steps);
+  }
+  return file;
+}
+
+MeshFile read_cgns(const std::string& name, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
+  reader->SetFileName(name.c_str());
+  reader->UpdateInformation();
+  reader->EnableAllBases();
+  reader->EnableAllFamilies();
+  reader->EnableAllCellArrays();
+  reader->EnableAllPointArrays();
+  const std::string remark = update_to_last_time(*reader);
+  messages.check(name);
+  MeshFile file = collected(name, "CGNS", reader->GetOutputDataObject(0));
+  file.remark += (file.remark.empty() || remark.empty() ? "" : "; ") + remark;
+  return file;
+}
+
+}  // namespace
+
+MeshFile read_mesh_with_vtk(const std::filesystem::path& path) {
+  const VtkMessages messages;
+  const std::string name = path.string(), extension = file_extension(path);
+  MeshFile file;
+  if (extension == ".vtu") {
+    file = read_xml<vtkXMLUnstructuredGridReader>(name, "VTK XML unstructured grid", messages);
+  } else if (extension == ".pvtu") {
+    file = read_xml<vtkXMLPUnstructuredGridReader>(name, "VTK XML unstructured grid in pieces", messages);
+  } else if (extension == ".vts") {
+    file = read_xml<vtkXMLStructuredGridReader>(name, "VTK XML structured grid", messages);
+  } else if (extension == ".pvts") {
+    file = read_xml<vtkXMLPStructuredGridReader>(name, "VTK XML structured grid in pieces", messages);
+  } else if (extension == ".vtm") {
+    file = read_xml<vtkXMLMultiBlockDataReader>(name, "VTK XML multiblock file", messages);
+  } else if (extension == ".vtk") {
+    file = read_legacy(name, messages);
+  } else if (extension == ".foam") {
+    file = read_openfoam(name, messages);
+  } else if (extension == ".cgns") {
+    file = read_cgns(name, messages);
+  } else {
+    file = read_exodus(name, messages);
+  }
+  messages.check(name);
+  return file;
+}
+
+}  // namespace adamas::io

@@ -1,0 +1,494 @@
+#include "interfaces/mesh_reconstruction/mesh_correction.h"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/base/median.h"
+#include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
+#include "interfaces/mesh_reconstruction/mesh_start.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+using Index = MeshSubdivision::Index;
+using Entry = MeshValues::Entry;
+
+/// Sharp fractions are corrected in at most so many rounds, until no cell is off by more than kEnough.
+constexpr int kMostRounds = 40;
+constexpr double kEnough = 2e-4;
+/// Rounds end where the differences fall to no less than this part of those of the round before.
+constexpr double kSlow = 0.97;
+/// Blurred fractions are corrected in so many rounds: more would fit noise.
+constexpr int kRoundsBlurred = 3;
+/// The variance of places in a cube along any direction, in relation to its side.
+constexpr double kCellVariance = 1.0 / 12;
+/// A value moves by at most this part of a cell's size in a round.
+constexpr double kMostMove = 0.2;
+/// A material's derivative in a cell is taken to be at least this, in cells per their size.
+constexpr double kLeastGrowth = 0.5;
+/// Cells whose volumes differ from the fractions by more are named: for sharp ones, and for blurred ones,
+/// where neither the width nor the shape of a step is known so well.
+constexpr double kTolerance = 1e-3, kToleranceBlurred = 0.03;
+/// Totals are closed up to this part of the domain, in at most so many rounds.
+constexpr double kTotalTolerance = 2e-11;
+constexpr int kMostClosings = 30;
+/// Steps that seem less wide, in sizes of cells, may be sharp; they are if values of sharp ones differ from
+/// the fractions by no more than kFits in the mean.
+constexpr double kSurelyBlurred = 0.7, kFits = 0.0015;
+/// The greatest part of the exchange between neighbours in a step of diffusion.
+constexpr double kDiffusionStep = 0.4;
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Smooths parts of cells as a Gaussian does, by diffusion between neighbours. At the boundary parts are
+/// continued linearly.
+class Diffusion {
+ public:
+  /// `widths`: the standard deviations by material, in sizes of cells.
+  Diffusion(const MeshValues& values, const std::vector<double>& widths) : values_(values) {
+    const MeshSubdivision& subdivision = values.subdivision();
+    const PolyhedralMesh& mesh = subdivision.mesh();
+    place_.assign(mesh.cell_count(), kNone);
+    for (std::uint32_t n = 0; n < values.active_cells().size(); ++n) place_[values.active_cells()[n]] = n;
+    const double widest = *std::ranges::max_element(widths);
+    double most = 0;
+    for (const Index c : values.active_cells()) {
+      first_.push_back(sides_.size());
+      double rate = 0;
+      Vec3 open;  // the area of the cell's faces at the boundary
+      for (const Index f : mesh.faces_of_cell(c)) {
+        const Index other = mesh.neighbour(c, f);
+        const Vec3 area = face_area(f);
+        if (other == PolyhedralMesh::kNone) {
+          open += area;
+          continue;
+        }
+        // The flux that passes a face, by the difference of the two cells.
+        const double by =
+            norm(area) / (distance(mesh.cell_center(c), mesh.cell_center(other)) * mesh.cell_volume(c));
+        sides_.push_back({other, by});
+        rate += by;
+      }
+      if (squared_norm(open) > 0) add_boundary(c, (1 / mesh.cell_volume(c)) * open);
+      most = std::max(most, 0.5 * rate * std::pow(widest * values.size(c), 2));
+    }
+    first_.push_back(sides_.size());
+    steps_ = std::max(1, static_cast<int>(std::ceil(most / kDiffusionStep)));
+  }
+
+  /// Smooths parts of active cells; `widths` are by material, in sizes of cells.
+  void run(const std::vector<double>& widths, std::vector<double>& parts) const {
+    std::vector<double> next(parts.size());
+    const std::vector<Index>& active = values_.active_cells();
+    std::vector<std::size_t> firsts{0};
+    for (const Index c : active) firsts.push_back(firsts.back() + values_.at(c).size());
+    for (int step = 0; step < steps_; ++step) {
+      parallel_for(active.size(), 256, [&](std::size_t n) {
+        const std::span<const Entry> own = values_.at(active[n]);
+        const double size = values_.size(active[n]);
+        for (std::size_t e = 0; e < own.size(); ++e) {
+          const double width = widths[own[e].material] * size, time = 0.5 * width * width / steps_;
+          double change = 0;
+          for (std::size_t s = first_[n]; s < first_[n + 1]; ++s)
+            change += sides_[s].rate *
+                      (part_of(sides_[s].cell, own[e].material, firsts, parts) - parts[firsts[n] + e]);
+          next[firsts[n] + e] = parts[firsts[n] + e] + time * change;
+        }
+      });
+      parts.swap(next);
+    }
+  }
+
+ private:
+  /// The area of a face as a vector that points out of its first cell.
+  [[nodiscard]] Vec3 face_area(Index f) const {
+    const PolyhedralMesh& mesh = values_.subdivision().mesh();
+    const std::span<const Index> points = mesh.face(f);
+    const Vec3 center = mesh.face_center(f);
+    Vec3 sum;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      sum += 0.5 * cross(mesh.points()[points[i]] - center,
+                         mesh.points()[points[(i + 1) % points.size()]] - center);
+    return sum;
+  }
+  /// Adds the flux through the boundary of a cell, by the gradient that the cells round it have by least
+  /// squares. `open`: the area of that boundary in relation to the cell's volume.
+  void add_boundary(Index c, const Vec3& open) {
+    const MeshSubdivision& subdivision = values_.subdivision();
+    const PolyhedralMesh& mesh = subdivision.mesh();
+    std::vector<Index> ring;
+    const std::array<Index, 1> self{c};
+    subdivision.find_ring(self, ring);
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    std::vector<Eigen::Vector3d> rows;
+    for (const Index other : ring) {
+      const Vec3 d = mesh.cell_center(other) - mesh.cell_center(c);
+      rows.emplace_back(d.x, d.y, d.z);
+      if (other != c) normal += rows.back() * rows.back().transpose() / squared_norm(d);
+    }
+    normal.diagonal().array() += 1e-9 * normal.trace();
+    const Eigen::Vector3d along = normal.ldlt().solve(Eigen::Vector3d(open.x, open.y, open.z));
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      if (ring[i] != c) sides_.push_back({ring[i], along.dot(rows[i]) / rows[i].squaredNorm()});
+    }
+  }
+  [[nodiscard]] double part_of(Index cell, std::uint16_t material, const std::vector<std::size_t>& firsts,
+                               const std::vector<double>& parts) const {
+    const std::span<const Entry> own = values_.at(cell);
+    for (std::size_t e = 0; e < own.size(); ++e) {
+      if (own[e].material == material) return place_[cell] == kNone ? 1 : parts[firsts[place_[cell]] + e];
+    }
+    return 0;
+  }
+
+  struct Side {
+    Index cell;
+    double rate;
+  };
+  const MeshValues& values_;
+  std::vector<std::uint32_t> place_;
+  std::vector<std::size_t> first_;
+  std::vector<Side> sides_;
+  int steps_ = 1;
+};
+
+class Correction {
+ public:
+  Correction(const MeshData& data, MeshValues& values, Progress& progress)
+      : data_(data), values_(values), progress_(progress), volumes_(values) {}
+
+  MeshAgreement run() {
+    const std::vector<double> found = step_widths(data_, values_);
+    const double widest = found.empty() ? 0 : *std::ranges::max_element(found);
+    // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
+    if (widest < kSurelyBlurred) {
+      correct(std::vector<double>(found.size(), 0.0));
+      if (agreement_.cells.mean_difference > kFits) correct(found);
+    } else {
+      correct(found);
+    }
+    if (values_.active_cells().empty()) return agreement_;
+    close_totals();
+    measure(false);
+    return agreement_;
+  }
+
+ private:
+  /// Corrects values for steps of these widths.
+  void correct(const std::vector<double>& widths) {
+    widths_ = widths;
+    blurs_.clear();
+    diffusion_.reset();
+    set_start_values(data_, widths, values_);
+    find_blur();
+    if (values_.active_cells().empty()) return;
+    const bool blurred = std::ranges::any_of(widths, [](double width) { return width > 0; });
+    if (blurred) {
+      // The cells themselves are a part of the width.
+      for (const double width : widths)
+        blurs_.push_back(std::sqrt(std::max(0.0, width * width - kCellVariance)));
+      diffusion_.emplace(values_, blurs_);
+    }
+    const int most = blurred ? kRoundsBlurred : kMostRounds;
+    double before = std::numeric_limits<double>::infinity();
+    std::vector<double> best;
+    for (int round = 0; round <= most; ++round) {
+      progress_.step("correcting volumes", static_cast<double>(round) / most);
+      measure(true);
+      if (agreement_.cells.mean_difference >= before) return restore(best);
+      if (agreement_.cells.greatest_difference <= kEnough || round == most) return;
+      if (!blurred && agreement_.cells.mean_difference > kSlow * before) return;
+      before = agreement_.cells.mean_difference;
+      best = kept();
+      move();
+    }
+  }
+
+  /// Measures parts of cells, those that blurred fractions show, and how far they are from the fractions.
+  void measure(bool growth) {
+    values_.interpolate();
+    volumes_.measure(growth);
+    const std::vector<Index>& active = values_.active_cells();
+    shown_.clear();
+    for (std::size_t n = 0; n < active.size(); ++n)
+      shown_.insert(shown_.end(), volumes_.parts(n).begin(), volumes_.parts(n).end());
+    if (diffusion_) diffusion_->run(blurs_, shown_);
+    CellAgreement& found = agreement_.cells;
+    found = {.tolerance = diffusion_ ? kToleranceBlurred : kTolerance};
+    double sum = 0;
+    std::size_t at = 0;
+    for (const Index c : active) {
+      double off = 0;
+      bool is_mixed = false;
+      for (const Entry& entry : std::as_const(values_).at(c)) {
+        off = std::max(off, std::abs(shown_[at++] - static_cast<double>(entry.fraction)));
+        is_mixed = is_mixed || (entry.fraction > 0 && entry.fraction < 1);
+      }
+      if (!is_mixed) {
+        found.full_cells_off += off > kTolerance ? 1 : 0;
+        found.greatest_in_full_cell = std::max(found.greatest_in_full_cell, off);
+        continue;
+      }
+      found.greatest_difference = std::max(found.greatest_difference, off);
+      sum += off;
+      ++found.mixed_cells;
+      found.cells_off += off > found.tolerance ? 1 : 0;
+    }
+    found.mean_difference = found.mixed_cells > 0 ? sum / static_cast<double>(found.mixed_cells) : 0;
+    agreement_.findings.mixed_cells = found.mixed_cells;
+    agreement_.findings.cells_off = found.cells_off;
+    agreement_.findings.tolerance = found.tolerance;
+    agreement_.findings.greatest_difference = found.greatest_difference;
+  }
+
+  /// Sets the findings about widths of steps in mixed cells.
+  void find_blur() {
+    FractionFindings& findings = agreement_.findings = {};
+    findings.dispersed.assign(data_.materials.size(), 0.0);
+    std::vector<double> of_cells;
+    std::size_t mixed = 0;
+    for (const Index c : values_.active_cells()) {
+      double width = 0;
+      bool is_mixed = false;
+      for (const Entry& entry : std::as_const(values_).at(c)) {
+        if (entry.fraction <= 0 || entry.fraction >= 1) continue;
+        is_mixed = true;
+        width = std::max(width, widths_[entry.material]);
+      }
+      mixed += is_mixed ? 1 : 0;
+      if (width > 0) of_cells.push_back(width);
+    }
+    if (of_cells.empty()) return;
+    findings.blur_share = static_cast<double>(of_cells.size()) / static_cast<double>(mixed);
+    findings.blur_greatest = *std::ranges::max_element(of_cells);
+    findings.blur_median = median(of_cells);
+  }
+
+  [[nodiscard]] std::vector<double> kept() const {
+    std::vector<double> result;
+    for (const Index c : values_.active_cells()) {
+      for (const Entry& entry : std::as_const(values_).at(c)) result.push_back(entry.value);
+    }
+    return result;
+  }
+  void restore(const std::vector<double>& kept) {
+    auto next = kept.begin();
+    for (const Index c : values_.active_cells()) {
+      for (Entry& entry : values_.at(c)) entry.value = *next++;
+    }
+  }
+
+  /// Moves values towards what the differences ask for.
+  void move() {
+    const std::vector<Index>& active = values_.active_cells();
+    std::vector<double> moves;
+    std::size_t at = 0;
+    for (std::size_t n = 0; n < active.size(); ++n) {
+      const double size = values_.size(active[n]);
+      const std::span<const double> growths = volumes_.growths(n);
+      const std::span<const Entry> own = std::as_const(values_).at(active[n]);
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        const double missing = static_cast<double>(own[e].fraction) - shown_[at++];
+        const double width = widths_[own[e].material];
+        const double by = width > 0 ? width * size * std::sqrt(2 * std::numbers::pi) * missing
+                                    : missing / std::max(growths[e], kLeastGrowth / size);
+        moves.push_back(std::clamp(by, -kMostMove * size, kMostMove * size));
+      }
+    }
+    if (diffusion_) continue_moves(moves);
+    at = 0;
+    for (const Index c : active) {
+      for (Entry& entry : values_.at(c)) entry.value += moves[at++];
+    }
+  }
+
+  /// Replaces the moves of blurred materials near the boundary, beyond which nobody knows what blurred
+  /// fractions would be, by those of the nearest cells inside.
+  void continue_moves(std::vector<double>& moves) const {
+    const std::vector<Index>& active = values_.active_cells();
+    const MeshSubdivision& subdivision = values_.subdivision();
+    const PolyhedralMesh& mesh = subdivision.mesh();
+    std::vector<std::size_t> firsts{0};
+    std::vector<std::uint32_t> place(mesh.cell_count(), kNone);
+    for (std::uint32_t n = 0; n < active.size(); ++n) {
+      place[active[n]] = n;
+      firsts.push_back(firsts.back() + values_.at(active[n]).size());
+    }
+    std::vector<Index> open, ring;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      if (mesh.cells_of_face(f)[1] == PolyhedralMesh::kNone) open.push_back(mesh.cells_of_face(f)[0]);
+    }
+    sort_unique(open);
+    const int layers = static_cast<int>(std::ceil(*std::ranges::max_element(blurs_)));
+    for (int layer = 1; layer < layers; ++layer) {
+      subdivision.find_ring(open, ring);
+      open.swap(ring);
+    }
+    std::vector<char> known(mesh.cell_count(), 1);
+    for (const Index c : open) known[c] = 0;
+    for (int layer = 0; layer < layers; ++layer) {
+      std::vector<Index> settled;
+      for (const Index c : open) {
+        if (known[c] != 0 || place[c] == kNone) continue;
+        const std::array<Index, 1> self{c};
+        subdivision.find_ring(self, ring);
+        std::erase_if(ring, [&](Index other) { return known[other] == 0 || place[other] == kNone; });
+        if (ring.empty()) continue;
+        settled.push_back(c);
+        const std::span<const Entry> own = std::as_const(values_).at(c);
+        for (std::size_t e = 0; e < own.size(); ++e) {
+          if (widths_[own[e].material] == 0) continue;
+          double sum = 0;
+          int count = 0;
+          for (const Index other : ring) {
+            const std::span<const Entry> there = std::as_const(values_).at(other);
+            const auto found = std::ranges::find(there, own[e].material, &Entry::material);
+            if (found == there.end()) continue;
+            sum += moves[firsts[place[other]] + static_cast<std::size_t>(found - there.begin())];
+            ++count;
+          }
+          if (count > 0) moves[firsts[place[c]] + e] = sum / count;
+        }
+      }
+      for (const Index c : settled) known[c] = 1;
+    }
+  }
+
+  /// Moves all values of each material by one offset until it has its volume.
+  void close_totals() {
+    const std::size_t count = values_.material_count();
+    const IdVector<MaterialId, double> wanted = data_.volumes();
+    const PolyhedralMesh& mesh = data_.mesh;
+    const std::vector<Index>& active = values_.active_cells();
+    double domain = 0;
+    for (std::size_t c = 0; c < mesh.cell_count(); ++c) domain += mesh.cell_volume(c);
+    std::vector<char> is_active(mesh.cell_count(), 0);
+    for (const Index c : active) is_active[c] = 1;
+    std::vector<double> sole(count, 0);
+    for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+      if (is_active[c] == 0) sole[values_.sole(c)] += mesh.cell_volume(c);
+    }
+    for (int round = 0; round < kMostClosings; ++round) {
+      progress_.step("closing volumes", static_cast<double>(round) / kMostClosings);
+      measure(true);
+      std::vector<double> owned = sole;
+      std::map<std::pair<std::uint16_t, std::uint16_t>, double> exchanged;
+      for (std::size_t n = 0; n < active.size(); ++n) {
+        const double volume = mesh.cell_volume(active[n]);
+        const std::span<const Entry> own = std::as_const(values_).at(active[n]);
+        for (std::size_t e = 0; e < own.size(); ++e) owned[own[e].material] += volume * volumes_.parts(n)[e];
+        for (const auto& [a, b, growth] : volumes_.exchanges(n)) exchanged[{a, b}] += volume * growth;
+      }
+      const auto size = static_cast<Eigen::Index>(count);
+      Eigen::VectorXd missing(size);
+      for (std::size_t m = 0; m < count; ++m)
+        missing[static_cast<Eigen::Index>(m)] =
+            wanted[values_.material(static_cast<std::uint16_t>(m))] - owned[m];
+      if (missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
+      missing.array() -= missing.mean();
+      std::vector<Eigen::Triplet<double>> triplets;
+      double greatest = 0;
+      for (const auto& [pair, by] : exchanged) {
+        const int a = pair.first, b = pair.second;
+        triplets.emplace_back(a, a, by), triplets.emplace_back(b, b, by);
+        triplets.emplace_back(a, b, -by), triplets.emplace_back(b, a, -by);
+        greatest = std::max(greatest, by);
+      }
+      if (!(greatest > 0)) return;
+      for (int m = 0; m < size; ++m) triplets.emplace_back(m, m, 1e-9 * greatest);
+      Eigen::SparseMatrix<double> growth(size, size);
+      growth.setFromTriplets(triplets.begin(), triplets.end());
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth);
+      Eigen::VectorXd offsets = solver.solve(missing);
+      offsets.array() -= offsets.mean();
+      for (const Index c : active) {
+        const double most = kMostMove * values_.size(c);
+        for (Entry& entry : values_.at(c)) entry.value += std::clamp(offsets[entry.material], -most, most);
+      }
+    }
+  }
+
+  const MeshData& data_;
+  MeshValues& values_;
+  Progress& progress_;
+  MeshVolumes volumes_;
+  std::vector<double> widths_;  // by material, in sizes of cells; 0 for a sharp one
+  std::vector<double> blurs_;   // those without the part of the cells
+  std::optional<Diffusion> diffusion_;
+  std::vector<double> shown_;  // by entry of active cells
+  MeshAgreement agreement_;
+};
+
+}  // namespace
+
+MeshVolumes::MeshVolumes(const MeshValues& values) : values_(values) {
+  first_.push_back(0);
+  for (const Index c : values.active_cells()) first_.push_back(first_.back() + values.at(c).size());
+  parts_.resize(first_.back());
+  growths_.resize(first_.back());
+  exchanges_.resize(values.active_cells().size());
+}
+
+void MeshVolumes::measure(bool growth) {
+  parallel_for(exchanges_.size(), 32, [&](std::size_t n) { measure_cell(n, growth); });
+}
+
+void MeshVolumes::measure_cell(std::size_t n, bool growth) {
+  thread_local std::vector<CornerValues> found;
+  thread_local TetrahedronShares shares;
+  const Index cell = values_.active_cells()[n];
+  const MeshSubdivision& subdivision = values_.subdivision();
+  const std::span<const Entry> own = values_.at(cell);
+  const std::span<double> parts = std::span(parts_).subspan(first_[n], own.size()),
+                          growths = std::span(growths_).subspan(first_[n], own.size());
+  std::ranges::fill(parts, 0);
+  std::ranges::fill(growths, 0);
+  exchanges_[n].clear();
+  const auto place = [&](std::uint16_t number) {
+    return static_cast<std::size_t>(std::ranges::find(own, number, &Entry::material) - own.begin());
+  };
+  const double unit = 1 / subdivision.mesh().cell_volume(cell);
+  subdivision.for_each_tetrahedron(cell, [&](const std::array<Index, 4>& corners) {
+    const double volume = unit * subdivision.volume(corners);
+    const std::uint16_t first = values_.owner(corners[0]);
+    if (std::all_of(corners.begin() + 1, corners.end(), [&](Index p) { return values_.owner(p) == first; })) {
+      parts[place(first)] += volume;
+      return;
+    }
+    values_.find_materials(corners, found);
+    shares.divide(
+        found, growth,
+        [&](std::uint16_t number, double part) {
+          const std::size_t e = place(number);
+          if (e < own.size()) parts[e] += volume * part;
+        },
+        [&](const CornerValues& a, const CornerValues& b, const std::array<double, 4>& by) {
+          const double sum = volume * (by[0] + by[1] + by[2] + by[3]);
+          if (sum == 0) return;
+          const std::size_t e = place(a.number), f = place(b.number);
+          if (e < own.size()) growths[e] += sum;
+          if (f < own.size()) growths[f] += sum;
+          auto known = std::ranges::find_if(
+              exchanges_[n], [&](const Exchange& x) { return x.first == a.number && x.second == b.number; });
+          if (known == exchanges_[n].end()) {
+            exchanges_[n].push_back({a.number, b.number, sum});
+          } else {
+            known->growth += sum;
+          }
+        });
+  });
+}
+
+MeshAgreement correct_values(const MeshData& data, MeshValues& values, Progress& progress) {
+  return Correction(data, values, progress).run();
+}
+
+}  // namespace adamas::interfaces

@@ -1,0 +1,17 @@
+#include "interfaces/mesh_reconstruction/mesh_reconstruction.h"
+
+#include "interfaces/mesh_reconstruction/mesh_interfaces.h"
+#include "interfaces/mesh_reconstruction/mesh_values.h"
+
+namespace adamas::interfaces {
+
+MeshReconstruction reconstruct_mesh(const MeshData& data, Progress& progress) {
+  if (!data.labels.empty()) return {interfaces_of_labels(data), {}};
+  progress.step("finding materials near cells", -1);
+  const MeshSubdivision subdivision(data.mesh);
+  MeshValues values(data, subdivision);
+  const MeshAgreement agreement = correct_values(data, values, progress);
+  return {interfaces_of_values(data, values, progress), agreement};
+}
+
+}  // namespace adamas::interfaces

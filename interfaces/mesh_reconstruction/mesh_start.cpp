@@ -1,0 +1,328 @@
+#include "interfaces/mesh_reconstruction/mesh_start.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/base/median.h"
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/cut_volumes.h"
+#include "interfaces/reconstruction/normal_distribution.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+using Index = MeshSubdivision::Index;
+using Entry = MeshValues::Entry;
+
+/// Fractions show the width of a step if they are between this and the rest of 1.
+constexpr double kShown = 0.1;
+/// Widths are found from at most so many cells.
+constexpr std::size_t kMostShown = 20000;
+/// The greatest width.
+constexpr double kWidest = 3;
+/// Values of blurred materials are clipped at this many widths.
+constexpr double kFarthest = 3.5;
+/// Normals of planes are found again from distances so often.
+constexpr int kNormalRounds = 3;
+
+/// The plane of a material in a mixed cell: distances are positive inside.
+struct CellPlane {
+  Vec3 normal;          ///< of unit length, towards the material
+  double distance = 0;  ///< that of the cell's centre
+};
+
+class Start {
+ public:
+  Start(const MeshData& data, MeshValues& values)
+      : data_(data), values_(values), mesh_(data.mesh), subdivision_(values.subdivision()) {}
+
+  std::vector<double> widths() {
+    find_gradients_of_fractions();
+    return find_widths();
+  }
+
+  void run(const std::vector<double>& widths) {
+    find_gradients_of_fractions();
+    // Cells of one material have one value, from which points beside them are interpolated.
+    for (std::size_t c = 0; c < mesh_.cell_count(); ++c) {
+      for (Entry& entry : values_.at(c)) entry.value = 4 * values_.size(c);
+    }
+    for (int round = 0;; ++round) {
+      find_planes(widths);
+      set_values(widths);
+      if (round == kNormalRounds) return;
+      // The gradients of distances are better normals than those of fractions.
+      find_gradients([this](Index cell, const Entry& entry) { return value(cell, entry.material); });
+    }
+  }
+
+ private:
+  static bool is_mixed(const Entry& entry) { return entry.fraction > 0 && entry.fraction < 1; }
+
+  void find_gradients_of_fractions() {
+    find_gradients([this](Index cell, const Entry& entry) { return fraction(cell, entry.material); });
+  }
+
+  void set_values(const std::vector<double>& widths) {
+    const std::vector<Index>& active = values_.active_cells();
+    std::vector<std::vector<double>> found(active.size());
+    parallel_for(active.size(), 64, [&](std::size_t n) {
+      for (const Entry& entry : std::as_const(values_).at(active[n]))
+        found[n].push_back(value_of(active[n], entry, widths[entry.material]));
+    });
+    for (std::size_t n = 0; n < active.size(); ++n) {
+      const std::span<Entry> own = values_.at(active[n]);
+      for (std::size_t e = 0; e < own.size(); ++e) own[e].value = found[n][e];
+    }
+  }
+
+  /// Finds the gradients of what value_of(cell, entry) says, at mixed entries, from the cells round, by least
+  /// squares.
+  template <class ValueOf>
+  void find_gradients(ValueOf&& value_of) {
+    gradients_.assign(mesh_.cell_count(), {});
+    const std::vector<Index>& active = values_.active_cells();
+    parallel_for(active.size(), 64, [&](std::size_t n) {
+      const Index c = active[n];
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      if (std::ranges::none_of(own, is_mixed)) return;
+      thread_local std::vector<Index> ring;
+      const std::array<Index, 1> self{c};
+      subdivision_.find_ring(self, ring);
+      Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+      std::vector<Eigen::Vector3d> right(own.size(), Eigen::Vector3d::Zero());
+      for (const Index other : ring) {
+        if (other == c) continue;
+        const Vec3 d = mesh_.cell_center(other) - mesh_.cell_center(c);
+        const Eigen::Vector3d row(d.x, d.y, d.z);
+        const double w = 1 / squared_norm(d);
+        normal += w * row * row.transpose();
+        for (std::size_t e = 0; e < own.size(); ++e)
+          right[e] += w * (value_of(other, own[e]) - value_of(c, own[e])) * row;
+      }
+      normal.diagonal().array() += 1e-9 * normal.trace();
+      const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+      gradients_[c].resize(own.size());
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        const Eigen::Vector3d g = solver.solve(right[e]);
+        gradients_[c][e] = {g[0], g[1], g[2]};
+      }
+    });
+  }
+
+  [[nodiscard]] double fraction(Index cell, std::uint16_t material) const {
+    for (const Entry& entry : std::as_const(values_).at(cell)) {
+      if (entry.material == material) return static_cast<double>(entry.fraction);
+    }
+    return 0;
+  }
+
+  [[nodiscard]] double value(Index cell, std::uint16_t material) const {
+    for (const Entry& entry : std::as_const(values_).at(cell)) {
+      if (entry.material == material) return entry.value;
+    }
+    return -4 * values_.size(cell);
+  }
+
+  /// The widths of steps: the median of those with which the gradients found are those of a plane step.
+  [[nodiscard]] std::vector<double> find_widths() const {
+    std::vector<std::pair<Index, std::size_t>> shown;  // cells and entries
+    for (const Index c : values_.active_cells()) {
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      for (std::size_t e = 0; e < own.size() && !gradients_[c].empty(); ++e) {
+        if (own[e].fraction >= kShown && own[e].fraction <= 1 - kShown) shown.emplace_back(c, e);
+      }
+    }
+    const std::size_t stride = shown.size() / kMostShown + 1;
+    std::vector<double> widths((shown.size() + stride - 1) / stride);
+    parallel_for(widths.size(), 32, [&](std::size_t n) {
+      const auto [c, e] = shown[n * stride];
+      widths[n] = width_at(c, std::as_const(values_).at(c)[e], gradients_[c][e]);
+    });
+    std::vector<std::vector<double>> found(values_.material_count());
+    for (std::size_t n = 0; n < widths.size(); ++n) {
+      const auto [c, e] = shown[n * stride];
+      found[std::as_const(values_).at(c)[e].material].push_back(widths[n]);
+    }
+    std::vector<double> result;
+    for (std::vector<double>& own : found) {
+      const double width = own.empty() ? 0 : median(own);
+      result.push_back(std::min(width, kWidest));
+    }
+    return result;
+  }
+
+  /// Returns the width, in sizes of the cell, of a plane step whose gradient over the cells round, as
+  /// find_gradients() finds it, is as steep as that found.
+  [[nodiscard]] double width_at(Index c, const Entry& entry, const Vec3& gradient) const {
+    thread_local std::vector<Index> ring;
+    const std::array<Index, 1> self{c};
+    subdivision_.find_ring(self, ring);
+    const Vec3 towards = normalized(gradient);
+    const double size = values_.size(c), slope = norm(gradient) * size,
+                 at = normal_quantile(static_cast<double>(entry.fraction));
+    std::vector<std::array<double, 2>> round;  // heights along the gradient, with weights
+    double squares = 0;
+    for (const Index other : ring) {
+      if (other == c) continue;
+      const Vec3 d = mesh_.cell_center(other) - mesh_.cell_center(c);
+      const double height = dot(d, towards) / size, weight = size * size / squared_norm(d);
+      round.push_back({height, weight});
+      squares += weight * height * height;
+    }
+    const auto slope_of = [&](double width) {
+      double sum = 0;
+      for (const auto& [height, weight] : round)
+        sum +=
+            weight * height * (normal_probability(at + height / width) - static_cast<double>(entry.fraction));
+      return sum / squares;
+    };
+    double narrow = 0.02, wide = 2 * kWidest;
+    for (int step = 0; step < 30; ++step) {
+      const double width = 0.5 * (narrow + wide);
+      (slope_of(width) > slope ? narrow : wide) = width;
+    }
+    return narrow;
+  }
+
+  /// Finds the planes that cut off the fractions of mixed cells.
+  void find_planes(const std::vector<double>& widths) {
+    planes_.assign(mesh_.cell_count(), {});
+    const std::vector<Index>& active = values_.active_cells();
+    parallel_for(active.size(), 16, [&](std::size_t n) {
+      const Index c = active[n];
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      if (gradients_[c].empty()) return;
+      planes_[c].resize(own.size());
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        const double slope = norm(gradients_[c][e]);
+        if (!is_mixed(own[e]) || !(slope > 0) || widths[own[e].material] > 0) continue;
+        const Vec3 towards = (1 / slope) * gradients_[c][e];
+        planes_[c][e] = CellPlane{towards, cut(c, towards, static_cast<double>(own[e].fraction))};
+      }
+    });
+  }
+
+  /// Returns the distance of a cell's centre from the plane that cuts off this part of the cell on the side
+  /// to which `towards` points.
+  [[nodiscard]] double cut(Index cell, const Vec3& towards, double part) const {
+    struct Corners {
+      std::array<double, 4> heights;
+      double volume;
+    };
+    thread_local std::vector<Corners> tetrahedra;
+    tetrahedra.clear();
+    double low = 0, high = 0;
+    const Vec3 center = mesh_.cell_center(cell);
+    subdivision_.for_each_tetrahedron(cell, [&](const std::array<Index, 4>& corners) {
+      Corners found{{}, subdivision_.volume(corners) / mesh_.cell_volume(cell)};
+      for (std::size_t i = 0; i < 4; ++i) {
+        found.heights[i] = dot(towards, subdivision_.position(corners[i]) - center);
+        low = std::min(low, found.heights[i]);
+        high = std::max(high, found.heights[i]);
+      }
+      tetrahedra.push_back(found);
+    });
+    // The part above the height -d grows with d from 0 to 1.
+    double less = -high, more = -low;
+    for (int step = 0; step < 40 && more - less > 1e-12 * (high - low); ++step) {
+      const double d = 0.5 * (less + more);
+      double above = 0;
+      for (const Corners& t : tetrahedra)
+        above +=
+            t.volume *
+            positive_part({t.heights[0] + d, t.heights[1] + d, t.heights[2] + d, t.heights[3] + d}).volume;
+      (above < part ? less : more) = d;
+    }
+    return 0.5 * (less + more);
+  }
+
+  /// Returns the value of an entry of an active cell.
+  [[nodiscard]] double value_of(Index c, const Entry& entry, double width) const {
+    const double size = values_.size(c);
+    if (width > 0) {
+      const double f = std::clamp(static_cast<double>(entry.fraction), 1e-12, 1 - 1e-12);
+      return width * size * std::clamp(normal_quantile(f), -kFarthest, kFarthest);
+    }
+    const std::span<const Entry> own = std::as_const(values_).at(c);
+    const auto place = static_cast<std::size_t>(&entry - own.data());
+    if (is_mixed(entry)) {
+      if (!planes_[c].empty() && planes_[c][place]) return planes_[c][place]->distance;
+      return (static_cast<double>(entry.fraction) - 0.5) * size;
+    }
+    // The distance is continued from the planes of the nearest mixed cells.
+    const double side = entry.fraction > 0 ? 1 : -1;
+    thread_local std::vector<Index> ring, wider;
+    ring.assign(1, c);
+    for (int step = 0; step < 3; ++step) {
+      subdivision_.find_ring(ring, wider);
+      ring.swap(wider);
+      double sum = 0, weights = 0;
+      for (const Index other : ring) {
+        if (planes_[other].empty()) continue;
+        const std::span<const Entry> there = std::as_const(values_).at(other);
+        for (std::size_t e = 0; e < there.size(); ++e) {
+          if (there[e].material != entry.material || !planes_[other][e]) continue;
+          const Vec3 d = mesh_.cell_center(c) - mesh_.cell_center(other);
+          const double squared = squared_norm(d), w = 1 / (squared * squared);
+          sum += w * (planes_[other][e]->distance + dot(planes_[other][e]->normal, d));
+          weights += w;
+        }
+      }
+      if (weights > 0) return side * std::max(side * sum / weights, inner_radius(c));
+    }
+    // Interfaces along faces of cells leave no mixed cell: they are halfway between centres.
+    return side * nearest_other(c, entry, ring);
+  }
+
+  /// Returns half the distance from a cell's centre to that of the nearest cell, among those of the ring, on
+  /// the other side of the material's boundary.
+  [[nodiscard]] double nearest_other(Index c, const Entry& entry, const std::vector<Index>& ring) const {
+    double least = 8 * values_.size(c);
+    for (const Index other : ring) {
+      if ((fraction(other, entry.material) > 0.5) == (entry.fraction > 0.5f)) continue;
+      const double d = distance(mesh_.cell_center(c), mesh_.cell_center(other));
+      least = std::min(least, d - 0.5 * values_.size(other));
+    }
+    return std::max(least, inner_radius(c));
+  }
+
+  /// Returns the least distance of a cell's centre from the planes of its faces.
+  [[nodiscard]] double inner_radius(Index c) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Index f : mesh_.faces_of_cell(c)) {
+      const std::span<const Index> points = mesh_.face(f);
+      const Vec3 center = mesh_.face_center(f);
+      Vec3 normal;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        normal += cross(mesh_.points()[points[i]] - center,
+                        mesh_.points()[points[(i + 1) % points.size()]] - center);
+      least = std::min(least, std::abs(dot(normalized(normal), center - mesh_.cell_center(c))));
+    }
+    return least;
+  }
+
+  const MeshData& data_;
+  MeshValues& values_;
+  const PolyhedralMesh& mesh_;
+  const MeshSubdivision& subdivision_;
+  std::vector<std::vector<Vec3>> gradients_;  // by cell and entry; empty for cells without mixed entries
+  std::vector<std::vector<std::optional<CellPlane>>> planes_;  // in the same way
+};
+
+}  // namespace
+
+std::vector<double> step_widths(const MeshData& data, MeshValues& values) {
+  return Start(data, values).widths();
+}
+
+void set_start_values(const MeshData& data, const std::vector<double>& widths, MeshValues& values) {
+  Start(data, values).run(widths);
+}
+
+}  // namespace adamas::interfaces

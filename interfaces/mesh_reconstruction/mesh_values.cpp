@@ -1,0 +1,140 @@
+#include "interfaces/mesh_reconstruction/mesh_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+/// Cells have entries for the materials of the cells this many steps away: values at points are those of the
+/// cells round them and of those beside these, and a material has values wherever it could own something.
+constexpr int kRings = 3;
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Appends the materials of another list.
+void unite(std::vector<std::uint16_t>& list, std::span<const std::uint16_t> other) {
+  list.insert(list.end(), other.begin(), other.end());
+}
+
+}  // namespace
+
+MeshValues::MeshValues(const MeshData& data, const MeshSubdivision& subdivision)
+    : subdivision_(subdivision), by_name_(materials_by_name(data.materials)) {
+  const PolyhedralMesh& mesh = data.mesh;
+  const std::size_t cells = mesh.cell_count();
+  // The materials of cells spread over points: from cells to their points and back is one ring.
+  std::vector<std::vector<std::uint16_t>> of_cells(cells), of_points(mesh.points().size());
+  for (std::uint16_t n = 0; n < by_name_.size(); ++n) {
+    const MaterialId m = by_name_[n];
+    for (std::size_t c = 0; c < cells; ++c) {
+      if (data.fraction(m, c) > 0) of_cells[c].push_back(n);
+    }
+  }
+  for (int ring = 0; ring < kRings; ++ring) {
+    parallel_for(of_points.size(), 1024, [&](std::size_t p) {
+      of_points[p].clear();
+      for (const Index c : mesh.cells_round(p)) unite(of_points[p], of_cells[c]);
+      sort_unique(of_points[p]);
+    });
+    parallel_for(cells, 1024, [&](std::size_t c) {
+      of_cells[c].clear();
+      for (const Index p : mesh.points_of_cell(c)) unite(of_cells[c], of_points[p]);
+      sort_unique(of_cells[c]);
+    });
+  }
+  first_entries_.push_back(0);
+  double widest = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    for (const std::uint16_t n : of_cells[c]) entries_.push_back({n, data.fraction(by_name_[n], c), 0});
+    first_entries_.push_back(static_cast<std::uint32_t>(entries_.size()));
+    if (of_cells[c].size() > 1) active_.push_back(static_cast<Index>(c));
+    widest = std::max(widest, size(c));
+  }
+  far_ = -32 * widest;
+  for (const Index c : active_) {
+    const std::span<const Index> round = mesh.points_of_cell(c);
+    points_.insert(points_.end(), round.begin(), round.end());
+    for (const Index f : mesh.faces_of_cell(c)) points_.push_back(subdivision.face_center(f));
+  }
+  sort_unique(points_);
+  place_of_point_.assign(subdivision.cell_center(0), kNone);
+  for (std::uint32_t n = 0; n < points_.size(); ++n) place_of_point_[points_[n]] = n;
+  stencils_.resize(points_.size());
+  parallel_for(points_.size(), 256,
+               [&](std::size_t n) { subdivision.find_stencil(points_[n], stencils_[n]); });
+  first_of_point_.push_back(0);
+  std::vector<std::uint16_t> common;
+  for (const MeshSubdivision::Stencil& stencil : stencils_) {
+    // The materials that all cells of the stencil have entries of.
+    common = of_cells[stencil.cells[0]];
+    for (const Index c : stencil.cells)
+      std::erase_if(common, [&](std::uint16_t n) { return !std::ranges::binary_search(of_cells[c], n); });
+    for (const std::uint16_t n : common) of_points_.push_back({n, 0});
+    first_of_point_.push_back(static_cast<std::uint32_t>(of_points_.size()));
+  }
+}
+
+double MeshValues::size(std::size_t cell) const { return std::cbrt(subdivision_.mesh().cell_volume(cell)); }
+
+void MeshValues::interpolate() {
+  parallel_for(points_.size(), 1024, [&](std::size_t n) {
+    const auto& [cells, weights] = stencils_[n];
+    for (std::uint32_t e = first_of_point_[n]; e < first_of_point_[n + 1]; ++e) {
+      double sum = 0;
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        for (const Entry& entry : std::as_const(*this).at(cells[i])) {
+          if (entry.material == of_points_[e].material) sum += weights[i] * entry.value;
+        }
+      }
+      of_points_[e].value = sum;
+    }
+  });
+}
+
+std::span<const MeshValues::PointEntry> MeshValues::at_point(Index point) const {
+  const std::uint32_t n = place_of_point_[point];
+  return std::span(of_points_).subspan(first_of_point_[n], first_of_point_[n + 1] - first_of_point_[n]);
+}
+
+std::uint16_t MeshValues::owner(Index point) const {
+  std::uint16_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  const auto look = [&](const auto& entries) {
+    for (const auto& entry : entries) {
+      if (entry.value > most) best = entry.material, most = entry.value;
+    }
+  };
+  if (point < place_of_point_.size()) {
+    look(at_point(point));
+  } else {
+    look(at(point - place_of_point_.size()));
+  }
+  return best;
+}
+
+void MeshValues::find_materials(const std::array<Index, 4>& corners, std::vector<CornerValues>& found) const {
+  found.clear();
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto add = [&](const auto& entries) {
+      for (const auto& entry : entries) {
+        auto at = std::ranges::find_if(found, [&](const auto& m) { return m.number >= entry.material; });
+        if (at == found.end() || at->number != entry.material)
+          at = found.insert(at, {entry.material, {far_, far_, far_, far_}});
+        at->values[c] = entry.value;
+      }
+    };
+    if (corners[c] < place_of_point_.size()) {
+      add(at_point(corners[c]));
+    } else {
+      add(at(corners[c] - place_of_point_.size()));
+    }
+  }
+}
+
+}  // namespace adamas::interfaces

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/data/mesh_data.h"
+#include "interfaces/mesh_reconstruction/mesh_subdivision.h"
+#include "interfaces/reconstruction/tetrahedron_shares.h"
+
+namespace adamas::interfaces {
+
+/// The values of materials at the centres of cells, sparse: each cell has entries for the materials that it
+/// or a cell near it holds. A point of the subdivision belongs to the material with the greatest value there;
+/// of equal ones, to the one whose name comes first.
+class MeshValues {
+ public:
+  using Index = MeshSubdivision::Index;
+  struct Entry {
+    std::uint16_t material;  ///< its number in the order of names
+    float fraction;
+    double value;  ///< a signed distance, positive inside the material
+  };
+
+  /// Finds the entries; values are not set. The data and the subdivision must outlive this object.
+  MeshValues(const MeshData& data, const MeshSubdivision& subdivision);
+
+  [[nodiscard]] const MeshSubdivision& subdivision() const { return subdivision_; }
+  [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
+  [[nodiscard]] std::size_t material_count() const { return by_name_.size(); }
+  [[nodiscard]] std::span<Entry> at(std::size_t cell) {
+    return std::span(entries_).subspan(first_entries_[cell], first_entries_[cell + 1] - first_entries_[cell]);
+  }
+  [[nodiscard]] std::span<const Entry> at(std::size_t cell) const {
+    return std::span(entries_).subspan(first_entries_[cell], first_entries_[cell + 1] - first_entries_[cell]);
+  }
+  /// The cells with entries of several materials, ascending.
+  [[nodiscard]] const std::vector<Index>& active_cells() const { return active_; }
+  /// The number of the one material of a cell without several entries.
+  [[nodiscard]] std::uint16_t sole(std::size_t cell) const { return at(cell)[0].material; }
+  /// A length of the size of a cell.
+  [[nodiscard]] double size(std::size_t cell) const;
+
+  /// Computes the values at the points of active cells from those at cell centres.
+  void interpolate();
+  /// Returns the number of the material with the greatest value at a point of an active cell.
+  [[nodiscard]] std::uint16_t owner(Index point) const;
+  /// Finds the materials that may own a part of a tetrahedron of an active cell, ascending by number.
+  void find_materials(const std::array<Index, 4>& corners, std::vector<CornerValues>& found) const;
+
+ private:
+  struct PointEntry {
+    std::uint16_t material;
+    double value;
+  };
+  [[nodiscard]] std::span<const PointEntry> at_point(Index point) const;
+
+  const MeshSubdivision& subdivision_;
+  std::vector<MaterialId> by_name_;
+  std::vector<std::uint32_t> first_entries_;
+  std::vector<Entry> entries_;
+  std::vector<Index> active_;
+  double far_ = 0;
+
+  /// The points of active cells that are no centres of cells, ascending, with stencils and values.
+  std::vector<Index> points_;
+  std::vector<MeshSubdivision::Stencil> stencils_;
+  std::vector<std::uint32_t> first_of_point_;
+  std::vector<PointEntry> of_points_;
+  std::vector<std::uint32_t> place_of_point_;  ///< by point: its place in points_, or kNone
+};
+
+}  // namespace adamas::interfaces

@@ -1,0 +1,212 @@
+#include "interfaces/mesh_reconstruction/mesh_reconstruction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/base/parallel.h"
+#include "interfaces/input/mesh_source.h"
+#include "interfaces/mesh_reconstruction/mesh_interfaces.h"
+#include "interfaces/network/interface_mesh_check.h"
+#include "interfaces/network/network_measures.h"
+#include "tests/interfaces/mesh_data_scenes.h"
+
+namespace adamas::interfaces {
+namespace {
+
+using test::jittered;
+using test::make_hexahedra;
+using test::sampled_data;
+using test::to_mesh;
+
+PolyhedralMesh jittered_cube(std::uint32_t n) {
+  return to_mesh(make_hexahedra({n, n, n}, [n](const Vec3& p) { return jittered(p, 0.2 / n); }));
+}
+
+/// A quarter of a tube: no box.
+PolyhedralMesh tube(std::uint32_t n) {
+  return to_mesh(make_hexahedra({n, 2 * n, n}, [](const Vec3& p) {
+    const double r = 1 + p.x, angle = 0.5 * M_PI * p.y;
+    return Vec3{r * std::cos(angle), r * std::sin(angle), p.z};
+  }));
+}
+
+/// Checks that interfaces are closed and agree with each other, and returns the volumes that they enclose.
+IdVector<MaterialId, double> checked_volumes(const InterfaceMesh& mesh, const Box3& box) {
+  const InterfaceMeshReport report = check_interface_mesh(mesh, &box);
+  EXPECT_EQ(report.open_border_edges, 0u);
+  EXPECT_EQ(report.flipped_edges, 0u);
+  const InterfaceNetwork network(mesh, box);
+  EXPECT_EQ(network.inconsistencies(), 0u);
+  EXPECT_FALSE(network.has_open_border());
+  return measure_network(network, box, mesh.materials.size()).volumes;
+}
+
+void expect_volumes(const MeshData& data, const InterfaceMesh& mesh) {
+  const IdVector<MaterialId, double> found = checked_volumes(mesh, data.mesh.box()), wanted = data.volumes();
+  const double domain = data.mesh.box().volume();
+  for (MaterialId m(0); m.value < wanted.size(); ++m.value)
+    EXPECT_NEAR(found[m], wanted[m], 1e-9 * domain) << data.materials[m];
+}
+
+TEST(MeshSubdivision, LinearFunctionsComeBackExactly) {
+  for (const PolyhedralMesh& mesh : {jittered_cube(4), tube(4)}) {
+    const MeshSubdivision subdivision(mesh);
+    const auto f = [](const Vec3& p) { return 0.3 + 2 * p.x - 0.7 * p.y + 1.1 * p.z; };
+    MeshSubdivision::Stencil stencil;
+    for (std::uint32_t p = 0; p < subdivision.cell_center(0); ++p) {
+      subdivision.find_stencil(p, stencil);
+      double sum = 0;
+      for (std::size_t i = 0; i < stencil.cells.size(); ++i)
+        sum += stencil.weights[i] * f(mesh.cell_center(stencil.cells[i]));
+      EXPECT_NEAR(sum, f(subdivision.position(p)), 1e-6) << "point " << p;
+    }
+  }
+}
+
+TEST(MeshSubdivision, TetrahedraFillTheCells) {
+  const PolyhedralMesh mesh = tube(4);
+  const MeshSubdivision subdivision(mesh);
+  for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) {
+    double sum = 0;
+    subdivision.for_each_tetrahedron(c, [&](const std::array<std::uint32_t, 4>& corners) {
+      EXPECT_GT(subdivision.volume(corners), 0);
+      sum += subdivision.volume(corners);
+    });
+    EXPECT_NEAR(sum, mesh.cell_volume(c), 1e-14);
+  }
+}
+
+TEST(MeshReconstruction, APlaneIsFoundUpToTheBoundary) {
+  const Vec3 normal = normalized(Vec3{1, 0.4, 0.7});
+  const auto plane = [&](const Vec3& p) { return dot(p - Vec3{0.5, 0.5, 0.5}, normal); };
+  const MeshData data = sampled_data(jittered_cube(8), plane, 12);
+  const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+  expect_volumes(data, found.mesh);
+  // Fractions by sampling are off by some 0.002.
+  for (const Vec3& p : found.mesh.points) EXPECT_NEAR(plane(p), 0, 0.02 / 8);
+}
+
+TEST(MeshReconstruction, ABallIsFound) {
+  constexpr int kCells = 12;
+  const auto ball = [](const Vec3& p) { return 0.31 - distance(p, {0.52, 0.49, 0.5}); };
+  const MeshData data = sampled_data(jittered_cube(kCells), ball);
+  const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+  expect_volumes(data, found.mesh);
+  double sum = 0, most = 0;
+  for (const Vec3& p : found.mesh.points) {
+    sum += std::abs(ball(p));
+    most = std::max(most, std::abs(ball(p)));
+  }
+  EXPECT_LT(sum / static_cast<double>(found.mesh.points.size()), 0.02 / kCells);
+  EXPECT_LT(most, 0.15 / kCells);
+  EXPECT_LT(found.agreement.cells.mean_difference, 0.005);
+}
+
+TEST(MeshReconstruction, TheBoundaryOfWhatIsNoBoxIsAnInterface) {
+  const auto ball = [](const Vec3& p) { return 0.4 - distance(p, {1.1, 1.0, 0.9}); };
+  const MeshData data = sampled_data(tube(6), ball);
+  const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+  ASSERT_EQ(found.mesh.materials.size(), 3u);
+  EXPECT_EQ(found.mesh.materials[MaterialId(2)], "outside");
+  expect_volumes(data, found.mesh);
+}
+
+/// Random fractions of four materials, in cells that are next to each other, make all kinds of junctions,
+/// also at the boundary.
+TEST(MeshReconstruction, JunctionsOfRandomFractionsAreClosed) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    MeshData data;
+    data.source = "random";
+    data.mesh = seed == 1 ? jittered_cube(4) : tube(3);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::array<std::vector<float>, 4> fractions;
+    for (std::size_t c = 0; c < data.mesh.cell_count(); ++c) {
+      std::array<double, 4> own{};
+      double sum = 0;
+      for (double& f : own) sum += f = uniform(random) < 0.5 ? 0 : uniform(random);
+      if (sum == 0) sum = own[c % 4] = 1;
+      for (std::size_t m = 0; m < 4; ++m) fractions[m].push_back(static_cast<float>(own[m] / sum));
+    }
+    for (std::size_t m = 0; m < 4; ++m) {
+      data.materials.push_back(std::string(1, static_cast<char>('a' + m)));
+      data.fractions.push_back(std::move(fractions[m]));
+    }
+    data.normalise();
+    const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+    expect_volumes(data, found.mesh);
+  }
+}
+
+TEST(MeshReconstruction, InterfacesOfLabelsAreFacesOfCells) {
+  MeshData data;
+  data.source = "labels";
+  data.mesh = tube(5);
+  for (const char* name : {"a", "b", "c"}) data.materials.push_back(name);
+  std::mt19937 random(7);
+  for (std::size_t c = 0; c < data.mesh.cell_count(); ++c)
+    data.labels.push_back(static_cast<std::uint16_t>(random() % 3));
+  data.check();
+  const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+  expect_volumes(data, found.mesh);
+}
+
+TEST(MeshReconstruction, ThreadsChangeNothing) {
+  const auto ball = [](const Vec3& p) { return 0.4 - distance(p, {1.1, 1.0, 0.9}); };
+  const MeshData data = sampled_data(tube(5), ball, 4);
+  set_thread_limit(1);
+  const InterfaceMesh one = reconstruct_mesh(data, SilentProgress::instance()).mesh;
+  set_thread_limit(2);
+  const InterfaceMesh two = reconstruct_mesh(data, SilentProgress::instance()).mesh;
+  set_thread_limit(0);
+  EXPECT_EQ(one.points, two.points);
+  EXPECT_EQ(one.triangles, two.triangles);
+}
+
+TEST(MeshFieldSource, AFieldOfDegreeOnePerMaterialComesBackExactly) {
+  const auto ball = [](const Vec3& p) { return 0.4 - distance(p, {1.1, 1.0, 0.9}); };
+  MeshData data = sampled_data(tube(6), ball);
+  const ResamplingSource bare = make_cells_source(data);
+  const auto is_in_a = [&](const Vec3& p) {
+    return bare.network->table().material(bare.body_at(p, nullptr)) == MaterialId(0);
+  };
+  const auto of_a = [](const Vec3& p) { return 1 + 2 * p.x - p.y + 0.5 * p.z; };
+  const auto of_b = [](const Vec3& p) { return 7 - p.x + 3 * p.y + p.z; };
+  MeshField mixed, apart, on_points;
+  mixed.name = "mixed", apart.name = "apart", on_points.name = "on points";
+  on_points.centering = Centering::kPoints;
+  std::vector<double> both, a, b, points;
+  for (std::size_t c = 0; c < data.mesh.cell_count(); ++c) {
+    const Vec3 p = data.mesh.cell_center(c);
+    a.push_back(of_a(p)), b.push_back(of_b(p));
+    both.push_back(is_in_a(p) ? of_a(p) : of_b(p));
+  }
+  mixed.values = std::move(both);
+  apart.material_values.resize(2);
+  apart.material_values[MaterialId(0)] = std::move(a);
+  apart.material_values[MaterialId(1)] = std::move(b);
+  for (const Vec3& p : data.mesh.points()) points.push_back(is_in_a(p) ? of_a(p) : of_b(p));
+  on_points.values = std::move(points);
+  data.fields = {mixed, apart, on_points};
+  data.check();
+  const ResamplingSource source = make_cells_source(data);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.01, 0.99);
+  std::vector<double> row(3);
+  std::vector<Vec3> gradients(3);
+  for (int n = 0; n < 300; ++n) {
+    const double r = 1 + uniform(random), angle = 0.5 * M_PI * uniform(random);
+    const Vec3 p{r * std::cos(angle), r * std::sin(angle), uniform(random)};
+    const bool in_a = is_in_a(p);
+    source.fields->values_and_gradients(MaterialId(in_a ? 0 : 1), p, row, gradients);
+    const double wanted = in_a ? of_a(p) : of_b(p);
+    for (const double found : row) EXPECT_NEAR(found, wanted, 1e-6);
+    const Vec3 slope = in_a ? Vec3{2, -1, 0.5} : Vec3{-1, 3, 1};
+    for (const Vec3& g : gradients) EXPECT_LT(norm(g - slope), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace adamas::interfaces
