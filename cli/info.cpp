@@ -320,7 +320,7 @@ Figures print_store(const std::string& path, Session& session) {
 bool has_data(const FileSummary& s, const InputOptions& options) {
   return !options.material_option().empty() ||
          std::any_of(s.arrays.begin(), s.arrays.end(),
-                     [](const ArraySummary& a) { return a.fraction_of.has_value(); });
+                     [](const ArraySummary& a) { return a.fraction_of || a.name == "block"; });
 }
 
 /// Whether the polygons of a file are interfaces: they have materials on both sides.
@@ -343,7 +343,10 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
       }
       return print_arrays(s, console, figures);
     case InputKind::kCells:
-      return print_arrays(s, console, figures);
+      print_arrays(s, console, figures);
+      if (s.kind != "polygons" && s.kind != "lines" && has_data(s, options))
+        print_data(options, console, figures);
+      return;
     case InputKind::kPolygons:
     case InputKind::kNetwork:
       if (is_network(s, options)) return print_network(summarize_interfaces(options), console, figures);

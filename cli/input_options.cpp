@@ -81,6 +81,8 @@ void add_material_options(const Command& command, InputOptions& options, const s
                   "A field of amounts per cell, to be divided by the material's volume there; repeatable",
                   data.extensive)
       .one_value_each();
+  input.add_value("--extrude", "H", "Of a mesh of two dimensions: the height of the cells made of it",
+                  data.extrude, parse_positive);
   input.add_flag(
       "--cells",
       "The values are of cells, whatever the file says (default, where it says nothing, for labels "

@@ -193,12 +193,9 @@ void PolyhedralMesh::turn_outwards(const std::string& name) {
       if (way[n] == 0) fail("{}: expected cells in one piece, found several in cell {}", name, c);
       sum += way[n] * volume_below(c, faces[n]);
     }
-    if (!(std::abs(sum) > 0)) fail("{}: expected cells with a volume, found none in cell {}", name, c);
-    if (sum < 0) {
-      for (std::size_t n = 0; n < faces.size(); ++n) way[n] = static_cast<signed char>(-way[n]);
-    }
-    cell_volumes_[c] = std::abs(sum);
+    cell_volumes_[c] = sum;
   });
+  turn_alike(name, ways);
   for (std::size_t c = 0, n = 0; c < cell_count(); ++c) {
     for (const Index f : faces_of_cell(c)) {
       if (face_cells_[f][0] == c && ways[n] < 0) {
@@ -208,19 +205,58 @@ void PolyhedralMesh::turn_outwards(const std::string& name) {
       ++n;
     }
   }
-  // Each face lies between its cells.
-  std::vector<signed char> of_first(face_count(), 0);
-  for (std::size_t c = 0, n = 0; c < cell_count(); ++c) {
-    for (const Index f : faces_of_cell(c)) {
-      const signed char way = ways[n++];
-      if (face_cells_[f][0] == c) {
-        of_first[f] = way;
-      } else if (of_first[f] == way) {
-        fail("{}: expected cells apart from each other, found {} and {} on one side of their face", name,
-             face_cells_[f][0], c);
+}
+
+/// Turns the cells of each connected part so that every face lies between its cells, and the part has a
+/// volume above 0.
+void PolyhedralMesh::turn_alike(const std::string& name, std::vector<signed char>& ways) {
+  const auto place = [&](Index cell, Index face) {
+    const std::span<const Index> faces = faces_of_cell(cell);
+    const auto first = static_cast<std::size_t>(faces.data() - cell_faces_.data());
+    return first + static_cast<std::size_t>(std::ranges::find(faces, face) - faces.begin());
+  };
+  const auto turn = [&](Index cell) {
+    const std::span<const Index> faces = faces_of_cell(cell);
+    const auto first = static_cast<std::size_t>(faces.data() - cell_faces_.data());
+    for (std::size_t n = 0; n < faces.size(); ++n)
+      ways[first + n] = static_cast<signed char>(-ways[first + n]);
+    cell_volumes_[cell] = -cell_volumes_[cell];
+  };
+  std::vector<char> known(cell_count(), 0);
+  std::vector<Index> part, open;
+  for (Index start = 0; start < cell_count(); ++start) {
+    if (known[start] != 0) continue;
+    part.clear();
+    open.assign(1, start);
+    known[start] = 1;
+    while (!open.empty()) {
+      const Index cell = open.back();
+      open.pop_back();
+      part.push_back(cell);
+      for (const Index f : faces_of_cell(cell)) {
+        const Index other = neighbour(cell, f);
+        if (other == kNone) continue;
+        const bool alike = ways[place(cell, f)] == -ways[place(other, f)];
+        if (known[other] != 0) {
+          if (!alike)
+            fail("{}: expected cells apart from each other, found {} and {} on one side of their face", name,
+                 cell, other);
+          continue;
+        }
+        if (!alike) turn(other);
+        known[other] = 1;
+        open.push_back(other);
       }
     }
+    double volume = 0;
+    for (const Index cell : part) volume += cell_volumes_[cell];
+    if (!(std::abs(volume) > 0))
+      fail("{}: expected cells with a volume, found none round cell {}", name, start);
+    if (volume > 0) continue;
+    for (const Index cell : part) turn(cell);
   }
+  tangled_ =
+      static_cast<std::size_t>(std::ranges::count_if(cell_volumes_, [](double v) { return !(v > 0); }));
 }
 
 bool PolyhedralMesh::fills_box() const {

@@ -52,8 +52,10 @@ class PolyhedralMesh {
   /// The mean of a cell's points, from which tetrahedra to the triangles of its faces fill it.
   [[nodiscard]] Vec3 cell_center(std::size_t c) const { return cell_centers_[c]; }
   /// The volume of a cell: the sum of those of its tetrahedra, which is exact for faces as they are defined
-  /// here.
+  /// here. It is 0 or less for a cell that is tangled or collapsed, so that volumes of regions add up.
   [[nodiscard]] double cell_volume(std::size_t c) const { return cell_volumes_[c]; }
+  /// The number of cells whose volume is not above 0.
+  [[nodiscard]] std::size_t tangled_cells() const { return tangled_; }
   /// The cells round each point: those of point p are `cells_round(p)`, ascending.
   [[nodiscard]] std::span<const Index> cells_round(std::size_t point) const {
     return part(point_cells_, point_ends_, point);
@@ -75,6 +77,7 @@ class PolyhedralMesh {
                   const std::vector<Index>& cell_ends);
   void find_points_of_cells();
   void turn_outwards(const std::string& name);
+  void turn_alike(const std::string& name, std::vector<signed char>& ways);
   [[nodiscard]] double volume_below(std::size_t cell, std::size_t face) const;
 
   std::vector<Vec3> points_;
@@ -83,6 +86,7 @@ class PolyhedralMesh {
   std::vector<Index> point_cells_, point_ends_, cell_points_, cell_point_ends_;
   std::vector<Vec3> cell_centers_;
   std::vector<double> cell_volumes_;
+  std::size_t tangled_ = 0;
   Box3 box_;
 };
 

@@ -9,6 +9,9 @@
 
 namespace adamas::inline core {
 
+/// The name of the array by which a resampled mesh that adamas has written is known.
+inline constexpr const char* kResampledVersion = "adamas version";
+
 /// A named array attached to the points or cells of a mesh, or to the mesh itself. `components` values per
 /// item.
 struct NamedArray {

@@ -134,16 +134,16 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
   FileSummary summary;
   switch (kind_by_format(path)) {
     case InputKind::kMesh:
+    case InputKind::kPolygons:
+      return summarize_mesh(path);
+    case InputKind::kCells:
+      if (file_extension(path) != ".vtu") return summarize_cells(path);
       try {
         return summarize_mesh(path);
       } catch (const Error&) {
         // It may have other cells than tetrahedra; other faults are found again.
         return summarize_cells(path);
       }
-    case InputKind::kPolygons:
-      return summarize_mesh(path);
-    case InputKind::kCells:
-      return summarize_cells(path);
     case InputKind::kNetwork: {
       const InterfaceMesh mesh = read_interface_mesh(path);
       summary.kind = is_network_file(path) ? "labelled network" : "interfaces";

@@ -102,7 +102,7 @@ InputKind kind_by_format(const std::filesystem::path& path) {
   const InputFormat* format = find_format_by_name(path);
   if (format == nullptr) return InputKind::kGrid;
   if (is_network_ply(path)) return InputKind::kNetwork;
-  return is_legacy_mesh(path) ? InputKind::kCells : format->kind;
+  return is_mesh_by_header(path) ? InputKind::kCells : format->kind;
 }
 
 const InputFormat& find_volume_format(const std::filesystem::path& path) {

@@ -22,10 +22,22 @@ class Reader {
     file_ = read_mesh_file(path_);
     data_.source = path_.string();
     refuse_options();
+    if (file_.flat && !options_.extrude)
+      fail(
+          "{}: expected cells with a volume, found those of two dimensions: pass --extrude H for cells of "
+          "this "
+          "height",
+          data_.source);
+    if (!file_.flat && options_.extrude)
+      fail("{}: --extrude: expected cells of two dimensions, found cells with a volume", data_.source);
+    if (file_.flat) extrude(file_, *options_.extrude);
     choose_blocks();
     progress_.step("joining cells", -1);
     data_.mesh = PolyhedralMesh::make(data_.source, std::move(file_.points), std::move(file_.face_points),
                                       file_.face_ends, file_.cell_ends);
+    if (data_.mesh.tangled_cells() > 0 && options_.note)
+      options_.note(fmt::format("{}: {} of {} cells are tangled or have no volume: they are left as they are",
+                                data_.source, data_.mesh.tangled_cells(), data_.mesh.cell_count()));
     const std::vector<std::string>& names =
         options_.labels == MeshFile::kBlocks ? file_.blocks : file_.material_names;
     MaterialArrays arrays(path_, options_, std::move(file_.arrays), names,
@@ -38,6 +50,7 @@ class Reader {
     progress_.step("check materials", 0.9);
     data_.normalise();
     data_.report.step = step_;
+    take_whole_cells_for_labels();
     data_.check();
     progress_.step("check materials", 1);
     return std::move(data_);
@@ -108,6 +121,21 @@ class Reader {
     }
     if (chosen.rest)
       data_.fractions.push_back(MaterialArrays::rest_of(data_.fractions, data_.mesh.cell_count()));
+  }
+
+  /// Makes labels of fractions if no cell has several materials: the interfaces are then faces of cells.
+  void take_whole_cells_for_labels() {
+    if (data_.fractions.empty()) return;
+    std::vector<std::uint16_t> labels(data_.mesh.cell_count(), 0);
+    for (MaterialId m(0); m.value < data_.fractions.size(); ++m.value) {
+      for (std::size_t c = 0; c < labels.size(); ++c) {
+        const float fraction = std::as_const(data_.fractions)[m][c];
+        if (fraction > 0 && fraction < 1) return;
+        if (fraction >= 1) labels[c] = static_cast<std::uint16_t>(m.value);
+      }
+    }
+    data_.labels = std::move(labels);
+    data_.fractions.clear();
   }
 
   void take_fields(std::vector<GridArray> arrays) {

@@ -7,9 +7,11 @@
 
 #include "adamas/text.h"
 #include "core/base/error.h"
+#include "core/data/unstructured_mesh.h"
 #include "core/io/file_handle.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
+#include "core/io/mesh_builder.h"
 #include "core/io/reader_program.h"
 #include "core/io/sent_grids.h"
 #include "core/io/vtk_checks.h"
@@ -18,9 +20,9 @@ namespace adamas::io {
 
 template <>
 inline constexpr auto kSentMembers<MeshFile> =
-    std::tuple{&MeshFile::kind,      &MeshFile::points,         &MeshFile::face_points,
-               &MeshFile::face_ends, &MeshFile::cell_ends,      &MeshFile::arrays,
-               &MeshFile::blocks,    &MeshFile::material_names, &MeshFile::remark};
+    std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points, &MeshFile::face_ends,
+               &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,      &MeshFile::material_names,
+               &MeshFile::remark,    &MeshFile::flat};
 
 namespace {
 
@@ -44,14 +46,30 @@ void check_sent(const std::string& name, const MeshFile& file) {
 InputFormat cells_format() {
   return {.name = "cells of a mesh",
           .kind = InputKind::kCells,
-          .endings = ".vts .pvtu .pvts .vtm .foam .exo .cgns",
+          .endings = ".vts .pvtu .pvts .vtm .vtkhdf .foam .exo .cgns .silo .pdb",
           .more_endings = ".e .ex2 .exii .g .gen"};
 }
 
+namespace {
+
+/// Returns whether a file is one of Silo, by its ending or, for that of HDF5, by a name that Silo writes,
+/// which stands near the beginning or the end of a file.
+bool is_silo(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  if (extension == ".silo" || extension == ".pdb") return true;
+  if (extension != ".h5" && extension != ".hdf5") return false;
+  constexpr std::size_t kSearched = 4 << 20;
+  std::string bytes(kSearched, '\0');
+  const auto file = FileHandle::open(path);
+  const auto found_at = [&](std::uint64_t offset) {
+    const std::size_t size = file->read_some(offset, std::as_writable_bytes(std::span(bytes)));
+    return std::string_view(bytes).substr(0, size).find("_silolibinfo") != std::string_view::npos;
+  };
+  const std::uint64_t size = std::filesystem::file_size(path);
+  return found_at(0) || (size > kSearched && found_at(size - kSearched));
+}
+
 bool is_legacy_mesh(const std::filesystem::path& path) {
-  if (file_extension(path) != ".vtk") return false;
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code)) return false;
   std::array<char, 1024> bytes{};
   const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
   const std::string_view beginning(bytes.data(), size);
@@ -59,8 +77,30 @@ bool is_legacy_mesh(const std::filesystem::path& path) {
          beginning.find("DATASET STRUCTURED_GRID") != std::string_view::npos;
 }
 
+bool is_foreign_vtu(const std::filesystem::path& path) {
+  try {
+    const std::vector<XmlTag> tags = read_xml_tags(supply_file(FileHandle::open(path), 0), path.string());
+    return std::ranges::none_of(tags,
+                                [](const XmlTag& tag) { return tag.value("Name") == kResampledVersion; });
+  } catch (const Error&) {
+    // Its reader says what is wrong.
+    return false;
+  }
+}
+
+}  // namespace
+
+bool is_mesh_by_header(const std::filesystem::path& path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) return false;
+  const std::string extension = file_extension(path);
+  if (extension == ".vtk") return is_legacy_mesh(path);
+  return extension == ".vtu" ? is_foreign_vtu(path) : is_silo(path);
+}
+
 void send_cells(const ReaderRequest& request, ByteSink& sink) {
-  sink.put(read_mesh_with_vtk(request.paths.front()));
+  const std::filesystem::path path = request.paths.front();
+  sink.put(is_silo(path) ? read_silo_mesh(path) : read_mesh_with_vtk(path));
 }
 
 MeshFile read_mesh_file(const std::filesystem::path& path) {
@@ -72,6 +112,34 @@ MeshFile read_mesh_file(const std::filesystem::path& path) {
   show_names(file.arrays, file.material_names);
   for (std::string& block : file.blocks) block = visible_text(block);
   return file;
+}
+
+void extrude(MeshFile& file, double height) {
+  const auto count = static_cast<std::uint32_t>(file.points.size());
+  for (std::uint32_t p = 0; p < count; ++p) file.points.push_back(file.points[p] + Vec3{0, 0, height});
+  const std::vector<std::uint32_t> points = std::exchange(file.face_points, {}),
+                                   ends = std::exchange(file.face_ends, {});
+  std::vector<std::uint32_t> face;
+  std::size_t begin = 0;
+  file.cell_ends.clear();
+  for (const std::uint32_t end : ends) {
+    const std::span<const std::uint32_t> own = std::span(points).subspan(begin, end - begin);
+    append_face(own, file);
+    face.clear();
+    for (const std::uint32_t p : own) face.push_back(p + count);
+    append_face(face, file);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const std::uint32_t a = own[i], b = own[(i + 1) % own.size()];
+      append_face(std::array{a, b, b + count, a + count}, file);
+    }
+    end_cell(file);
+    begin = end;
+  }
+  for (GridArray& array : file.arrays) {
+    if (array.centering == Centering::kCells) continue;
+    std::visit([](auto& values) { values.insert(values.end(), values.begin(), values.end()); }, array.values);
+  }
+  file.flat = false;
 }
 
 }  // namespace adamas::io

@@ -19,14 +19,17 @@ struct MeshFile {
   std::vector<Vec3> points;
   /// The faces of the cells, as PolyhedralMesh::make() takes them.
   std::vector<std::uint32_t> face_points, face_ends, cell_ends;
+  bool flat = false;  ///< whether cells have no volume: each is one face, in the plane of x and y
   std::vector<GridArray> arrays;
   std::vector<std::string> blocks;          ///< the names of the blocks, if there are several
   std::vector<std::string> material_names;  ///< as in GridFile
   std::string remark;                       ///< what else the file holds and is not read; usually empty
 };
 
-/// Whether a file is a legacy VTK file (.vtk) of a structured or unstructured grid, by its header.
-bool is_legacy_mesh(const std::filesystem::path& path);
+/// Whether a file has cells of a simulation although its ending may be of another kind, by its header: a
+/// legacy VTK file (.vtk) of a structured or unstructured grid, HDF5 of Silo, and a .vtu that adamas has not
+/// written as a resampled mesh.
+bool is_mesh_by_header(const std::filesystem::path& path);
 
 /// Reads the cells of a mesh: .vtu, .pvtu, .vts, .pvts, .vtm, legacy .vtk, ExodusII, CGNS, and the cases of
 /// OpenFOAM (a file NAME.foam in the case's folder). Of several times the last one is read.
@@ -35,5 +38,11 @@ bool is_legacy_mesh(const std::filesystem::path& path);
 MeshFile read_mesh_file(const std::filesystem::path& path);
 /// Reads a file as read_mesh_file does, but in this process.
 MeshFile read_mesh_with_vtk(const std::filesystem::path& path);
+/// Reads a file of Silo in this process: the first mesh of several blocks or, if there is none, the first with
+/// materials. Mixed zones become volume fractions, and variables with values for them fields per material.
+MeshFile read_silo_mesh(const std::filesystem::path& path);
+
+/// Makes prisms of this height of the cells of a flat mesh.
+void extrude(MeshFile& file, double height);
 
 }  // namespace adamas::io

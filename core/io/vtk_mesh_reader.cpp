@@ -11,6 +11,7 @@
 #include <vtkDataSetReader.h>
 #include <vtkExodusIIReader.h>
 #include <vtkFieldData.h>
+#include <vtkHDFReader.h>
 #include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
@@ -32,12 +33,12 @@
 #include <cmath>
 #include <map>
 #include <span>
-#include <unordered_map>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
+#include "core/io/mesh_builder.h"
 #include "core/io/mesh_file.h"
 #include "core/io/vtk_arrays.h"
 #include "core/io/vtk_support.h"
@@ -107,6 +108,24 @@ CellShape shape_of(int type) {
   }
 }
 
+/// Returns how many corners a polygon of a type has; -1 for any number, 0 for other cells.
+int polygon_corners(int type) {
+  switch (type) {
+    case VTK_TRIANGLE:
+    case VTK_QUADRATIC_TRIANGLE:
+      return 3;
+    case VTK_PIXEL:
+    case VTK_QUAD:
+    case VTK_QUADRATIC_QUAD:
+    case VTK_BIQUADRATIC_QUAD:
+      return 4;
+    case VTK_POLYGON:
+      return -1;
+    default:
+      return 0;
+  }
+}
+
 /// Returns whether cells of a type have no volume: points, lines, and cells of a surface.
 bool is_flat(int type) {
   switch (type) {
@@ -136,49 +155,6 @@ bool is_flat(int type) {
       return false;
   }
 }
-
-/// Gives points at one place, up to round-off, one number.
-class PointMerger {
- public:
-  /// `tolerance`: points nearer to each other are one.
-  PointMerger(double tolerance, std::vector<Vec3>& points) : cell_(4 * tolerance), points_(points) {}
-
-  Index number(const Vec3& p) {
-    const double reach = 0.25 * cell_;
-    for (const double x : {p.x - reach, p.x + reach}) {
-      for (const double y : {p.y - reach, p.y + reach}) {
-        for (const double z : {p.z - reach, p.z + reach}) {
-          const auto [begin, end] = places_.equal_range(key({x, y, z}));
-          for (auto at = begin; at != end; ++at) {
-            if (distance(points_[at->second], p) <= reach) return at->second;
-          }
-        }
-      }
-    }
-    const auto number = static_cast<Index>(points_.size());
-    places_.emplace(key(p), number);
-    points_.push_back(p);
-    return number;
-  }
-
- private:
-  [[nodiscard]] std::uint64_t key(const Vec3& p) const {
-    std::uint64_t result = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double place = cell_ > 0 ? std::floor(p[axis] / cell_) : p[axis];
-      std::uint64_t bits = 0;
-      const double whole = place + 0.0;
-      std::memcpy(&bits, &whole, sizeof bits);
-      result = (result ^ bits) * 0x9e3779b97f4a7c15ull;
-      result ^= result >> 29;
-    }
-    return result;
-  }
-
-  double cell_;
-  std::vector<Vec3>& points_;
-  std::unordered_multimap<std::uint64_t, Index> places_;
-};
 
 /// One data set of a file, with what is taken of it.
 struct Piece {
@@ -222,10 +198,13 @@ class CellCollector {
   }
 
  private:
-  /// Finds the cells that have a volume and are no copies of those of another piece.
+  /// Finds the cells that have a volume, or polygons if there are none, and are no copies of those of another
+  /// piece.
   void choose_cells() {
     std::map<int, std::size_t> refused;
-    for (Piece& piece : pieces_) {
+    std::vector<std::vector<vtkIdType>> polygons(pieces_.size());
+    for (std::size_t n = 0; n < pieces_.size(); ++n) {
+      Piece& piece = pieces_[n];
       const vtkUnsignedCharArray* ghosts = piece.set->GetCellGhostArray();
       for (vtkIdType c = 0; c < piece.set->GetNumberOfCells(); ++c) {
         constexpr unsigned kLeftOut = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL |
@@ -237,6 +216,7 @@ class CellCollector {
           piece.cells.push_back(c);
         } else if (is_flat(type)) {
           ++flat_;
+          if (polygon_corners(type) != 0) polygons[n].push_back(c);
         } else {
           ++refused[type];
         }
@@ -249,9 +229,13 @@ class CellCollector {
           "type {}",
           name_, refused.begin()->second, refused.begin()->first);
     }
+    file_.flat = std::ranges::all_of(pieces_, [](const Piece& piece) { return piece.cells.empty(); });
+    for (std::size_t n = 0; file_.flat && n < pieces_.size(); ++n) {
+      flat_ -= polygons[n].size();
+      pieces_[n].cells = std::move(polygons[n]);
+    }
     std::erase_if(pieces_, [](const Piece& piece) { return piece.cells.empty(); });
-    if (pieces_.empty())
-      fail("{}: expected cells with a volume, found {}", name_, flat_ > 0 ? "those of a surface" : "none");
+    if (pieces_.empty()) fail("{}: expected cells with a volume, found none", name_);
   }
 
   void number_points() {
@@ -268,7 +252,7 @@ class CellCollector {
       fail("{}: expected fewer than {} points, found {}", name_, std::numeric_limits<Index>::max(), count);
     // The points of one unstructured grid are apart on purpose.
     const bool merges = pieces_.size() > 1 || vtkUnstructuredGrid::SafeDownCast(pieces_[0].set) == nullptr;
-    PointMerger merger(kCoincident * box.diagonal(), file_.points);
+    PointMerger merger(PointMerger::kCoincident * box.diagonal(), file_.points);
     for (Piece& piece : pieces_) {
       std::vector<Index>& numbers = numbers_.emplace_back();
       for (vtkIdType p = 0; p < piece.set->GetNumberOfPoints(); ++p) {
@@ -287,23 +271,15 @@ class CellCollector {
     }
   }
 
+  /// Adds a face of a cell of a piece.
   void add_face(const std::vector<Index>& numbers, std::span<const vtkIdType> points) {
-    const std::size_t first = file_.face_points.size();
+    std::vector<Index> face;
     for (const vtkIdType p : points) {
       if (p < 0 || static_cast<std::size_t>(p) >= numbers.size())
         fail("{}: expected cells of {} points, found a cell of point {}", name_, numbers.size(), p);
-      const Index number = numbers[static_cast<std::size_t>(p)];
-      // Edges whose ends are one point vanish, and so do faces that become an edge.
-      if (file_.face_points.size() == first || file_.face_points.back() != number)
-        file_.face_points.push_back(number);
+      face.push_back(numbers[static_cast<std::size_t>(p)]);
     }
-    while (file_.face_points.size() > first + 1 && file_.face_points.back() == file_.face_points[first])
-      file_.face_points.pop_back();
-    if (file_.face_points.size() < first + 3) {
-      file_.face_points.resize(first);
-      return;
-    }
-    file_.face_ends.push_back(static_cast<Index>(file_.face_points.size()));
+    append_face(face, file_);
   }
 
   void add_cells() {
@@ -314,7 +290,18 @@ class CellCollector {
       auto* unstructured = vtkUnstructuredGrid::SafeDownCast(&set);
       for (const vtkIdType c : pieces_[n].cells) {
         const int type = set.GetCellType(c);
-        if (type == VTK_POLYHEDRON) {
+        if (file_.flat) {
+          set.GetCellPoints(c, ids);
+          const int corners = polygon_corners(type);
+          const vtkIdType count = corners < 0 ? ids->GetNumberOfIds() : corners;
+          if (ids->GetNumberOfIds() < count)
+            fail("{}: expected a cell of {} points, found {} of cell {}", name_, count, ids->GetNumberOfIds(),
+                 c);
+          face.assign(ids->GetPointer(0), ids->GetPointer(0) + count);
+          if (type == VTK_PIXEL) std::swap(face[2], face[3]);
+          higher_degree_ = higher_degree_ || (corners > 0 && ids->GetNumberOfIds() > count);
+          add_face(numbers_[n], face);
+        } else if (type == VTK_POLYHEDRON) {
           unstructured->GetFaceStream(c, ids);
           vtkIdType at = 0;
           const auto next = [&] { return at < ids->GetNumberOfIds() ? ids->GetId(at++) : -1; };
@@ -339,7 +326,7 @@ class CellCollector {
             add_face(numbers_[n], face);
           }
         }
-        file_.cell_ends.push_back(static_cast<Index>(file_.face_ends.size()));
+        end_cell(file_);
       }
     }
     if (higher_degree_) add_remark("cells of higher degree are taken by their corners");
@@ -412,9 +399,6 @@ class CellCollector {
     array.values = std::move(block_of_cell);
     file_.arrays.push_back(std::move(array));
   }
-
-  /// Points of different blocks are one if they are nearer than this part of the mesh's diagonal.
-  static constexpr double kCoincident = 1e-10;
 
   std::string name_;
   std::vector<Piece> pieces_;
@@ -508,6 +492,15 @@ MeshFile read_exodus(const std::string& name, const VtkMessages& messages) {
   return file;
 }
 
+MeshFile read_vtkhdf(const std::string& name, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<vtkHDFReader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected VTKHDF, found something else", name);
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  messages.check(name);
+  return collected(name, "VTKHDF", reader->GetOutputDataObject(0));
+}
+
 MeshFile read_cgns(const std::string& name, const VtkMessages& messages) {
   const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
   reader->SetFileName(name.c_str());
@@ -543,6 +536,8 @@ MeshFile read_mesh_with_vtk(const std::filesystem::path& path) {
     file = read_legacy(name, messages);
   } else if (extension == ".foam") {
     file = read_openfoam(name, messages);
+  } else if (extension == ".vtkhdf") {
+    file = read_vtkhdf(name, messages);
   } else if (extension == ".cgns") {
     file = read_cgns(name, messages);
   } else {

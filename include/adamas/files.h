@@ -57,6 +57,8 @@ struct MaterialDataOptions {
   /// Fields, by name, whose values are amounts per cell: they are divided by their material's volume there,
   /// and are zero where it has none.
   std::vector<std::string> extensive;
+  /// The height of the cells that are made of a mesh of two dimensions; none: such meshes are refused.
+  std::optional<double> extrude;
   /// x0, x1, y0, y1, z0, z1: only the sites in this box are kept.
   std::optional<std::array<double, 6>> region;
   /// The centering of the values, whatever the files say.

@@ -154,8 +154,9 @@ Input::Contents::Contents(std::unique_ptr<MeshData> taken)
   const IdVector<MaterialId, std::string> names = materials_with_outside(*cells);
   materials.assign(names.begin(), names.end());
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t cell = 0; cell < cells->mesh.cell_count(); ++cell)
-    least = std::min(least, cells->mesh.cell_volume(cell));
+  for (std::size_t cell = 0; cell < cells->mesh.cell_count(); ++cell) {
+    if (cells->mesh.cell_volume(cell) > 0) least = std::min(least, cells->mesh.cell_volume(cell));
+  }
   facts.voxel = std::cbrt(least);
 }
 

@@ -273,7 +273,7 @@ void MeshFieldSource::point_values(std::size_t field, MaterialId material, Index
                                            : mesh.cells_round(point)[0];
   Sample sample{subdivision_.position(point)};
   collect(field, material, from, 1, sample);
-  const double size = std::cbrt(mesh.cell_volume(from));
+  const double size = std::cbrt(std::abs(mesh.cell_volume(from)));
   fit_linear_at_origin(sample.offsets, sample.values, components, kSoftAtSites * size,
                        out.subspan(0, components));
   const std::lock_guard lock(shard.mutex);
@@ -339,7 +339,7 @@ void MeshFieldSource::values(MaterialId material, const Vec3& p, std::span<doubl
 void MeshFieldSource::fitted_values(MaterialId material, const Vec3& p, const Vec3& near,
                                     std::span<double> row) const {
   const Index cell = locate(near).cell;
-  const double size = std::cbrt(data_.mesh.cell_volume(cell));
+  const double size = std::cbrt(std::abs(data_.mesh.cell_volume(cell)));
   const int least = static_cast<int>(std::min<double>(norm(p - near) / size, kReach));
   for (std::size_t f = 0; f < fields_.size(); ++f) {
     Sample sample{p};

@@ -27,7 +27,7 @@ ResamplingSource make_cells_source(const MeshData& data, MeshReconstruction&& re
   double inside = 0, least = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < data.mesh.cell_count(); ++c) {
     inside += data.mesh.cell_volume(c);
-    least = std::min(least, data.mesh.cell_volume(c));
+    if (data.mesh.cell_volume(c) > 0) least = std::min(least, data.mesh.cell_volume(c));
   }
   if (source.materials.size() > source.volumes.size()) source.volumes.push_back(source.box.volume() - inside);
   source.voxel = std::cbrt(least);

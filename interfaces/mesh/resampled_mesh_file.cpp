@@ -115,7 +115,7 @@ UnstructuredMesh to_unstructured_mesh(const ResampledMesh& mesh) {
   }
   add_vertex_arrays(mesh, file);
   add_cell_arrays(mesh, file);
-  file.field_arrays.push_back({"adamas version", 1, Integers{kVersion}});
+  file.field_arrays.push_back({kResampledVersion, 1, Integers{kVersion}});
   add_knowledge(mesh, "adamas ", file.field_arrays);
   return file;
 }
@@ -123,7 +123,7 @@ UnstructuredMesh to_unstructured_mesh(const ResampledMesh& mesh) {
 bool is_resampled_mesh(const UnstructuredMesh& mesh) {
   return mesh.kind == CellKind::kTetrahedra &&
          std::any_of(mesh.field_arrays.begin(), mesh.field_arrays.end(),
-                     [](const NamedArray& array) { return array.name == "adamas version"; });
+                     [](const NamedArray& array) { return array.name == kResampledVersion; });
 }
 
 ResampledMesh from_unstructured_mesh(const UnstructuredMesh& file, const std::string& source) {

@@ -62,6 +62,7 @@ class Diffusion {
     double most = 0;
     for (const Index c : values.active_cells()) {
       first_.push_back(sides_.size());
+      if (!(mesh.cell_volume(c) > 0)) continue;
       double rate = 0;
       Vec3 open;  // the area of the cell's faces at the boundary
       for (const Index f : mesh.faces_of_cell(c)) {
@@ -298,8 +299,9 @@ class Correction {
       for (std::size_t e = 0; e < own.size(); ++e) {
         const double missing = static_cast<double>(own[e].fraction) - shown_[at++];
         const double width = widths_[own[e].material];
-        const double by = width > 0 ? width * size * std::sqrt(2 * std::numbers::pi) * missing
-                                    : missing / std::max(growths[e], kLeastGrowth / size);
+        const double by = width > 0      ? width * size * std::sqrt(2 * std::numbers::pi) * missing
+                          : missing == 0 ? 0
+                                         : missing / std::max(growths[e], kLeastGrowth / size);
         moves.push_back(std::clamp(by, -kMostMove * size, kMostMove * size));
       }
     }
@@ -455,6 +457,11 @@ void MeshVolumes::measure_cell(std::size_t n, bool growth) {
   const auto place = [&](std::uint16_t number) {
     return static_cast<std::size_t>(std::ranges::find(own, number, &Entry::material) - own.begin());
   };
+  if (!(subdivision.mesh().cell_volume(cell) > 0)) {
+    // A tangled cell is left as it is.
+    for (std::size_t e = 0; e < own.size(); ++e) parts[e] = static_cast<double>(own[e].fraction);
+    return;
+  }
   const double unit = 1 / subdivision.mesh().cell_volume(cell);
   subdivision.for_each_tetrahedron(cell, [&](const std::array<Index, 4>& corners) {
     const double volume = unit * subdivision.volume(corners);

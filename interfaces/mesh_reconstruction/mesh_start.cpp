@@ -201,7 +201,8 @@ class Start {
       planes_[c].resize(own.size());
       for (std::size_t e = 0; e < own.size(); ++e) {
         const double slope = norm(gradients_[c][e]);
-        if (!is_mixed(own[e]) || !(slope > 0) || widths[own[e].material] > 0) continue;
+        if (!is_mixed(own[e]) || !(slope > 0) || widths[own[e].material] > 0 || !(mesh_.cell_volume(c) > 0))
+          continue;
         const Vec3 towards = (1 / slope) * gradients_[c][e];
         planes_[c][e] = CellPlane{towards, cut(c, towards, static_cast<double>(own[e].fraction))};
       }

@@ -80,7 +80,9 @@ MeshValues::MeshValues(const MeshData& data, const MeshSubdivision& subdivision)
   }
 }
 
-double MeshValues::size(std::size_t cell) const { return std::cbrt(subdivision_.mesh().cell_volume(cell)); }
+double MeshValues::size(std::size_t cell) const {
+  return std::cbrt(std::abs(subdivision_.mesh().cell_volume(cell)));
+}
 
 void MeshValues::interpolate() {
   parallel_for(points_.size(), 1024, [&](std::size_t n) {

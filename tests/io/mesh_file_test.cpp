@@ -166,7 +166,8 @@ TEST(MeshFile, ArraysOfCellsAndPointsComeAlong) {
   const auto grid = hexahedra_grid(hexahedra);
   write<vtkXMLUnstructuredGridWriter>(scratch / "a.vtu", grid.Get());
   write<vtkDataSetWriter>(scratch / "a.vtk", grid.Get());
-  EXPECT_TRUE(is_legacy_mesh(scratch / "a.vtk"));
+  EXPECT_TRUE(is_mesh_by_header(scratch / "a.vtk"));
+  EXPECT_TRUE(is_mesh_by_header(scratch / "a.vtu"));
   for (const char* name : {"a.vtu", "a.vtk"}) {
     const MeshFile file = read_mesh_file(scratch / name);
     EXPECT_EQ(file.cell_ends.size(), 12u);

@@ -42,6 +42,7 @@ OWNED = {
     r"vtk\w*\.h": ["core/io", "tests"],
     r"cairo[\w-]*\.h|cairo/.*": ["core/picture", "tests"],
     r"tbb/.*|oneapi/tbb.*": ["core"],
+    r"silo\.h": ["core/io", "tests"],
     r"CGAL/.*": ["core/io", "interfaces", "tests"],
     r"Eigen/.*": ["interfaces", "tests"],
     r"OpenMesh/.*|adamas/openmesh\.h": ["interfaces", "tests"],

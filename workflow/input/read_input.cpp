@@ -48,24 +48,6 @@ void note_mended_fractions(const FractionReport& r, const std::string& source, P
   note(progress, "{}: volume fractions were mended: {}", source, what);
 }
 
-/// Returns whether a file has data on the cells of a mesh.
-bool is_mesh(const std::filesystem::path& path) {
-  const InputKind kind = input_kind(path);
-  return kind == InputKind::kCells || (kind == InputKind::kMesh && file_extension(path) == ".vtu");
-}
-
-std::shared_ptr<Input::Contents> load_mesh_data(const InputOptions& options, Progress& progress) {
-  if (const std::string option = options.raw.option(); !option.empty())
-    wrong_usage("{}: expected a file without a header, found {}", option, options.path.string());
-  MaterialDataOptions how = options.data;
-  if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
-  auto data = std::make_unique<MeshData>(read_mesh_data(options.path, how, progress));
-  note_mended_fractions(data->report, data->source, progress);
-  auto contents = std::make_shared<Input::Contents>(std::move(data));
-  contents->facts.name = options.path.string();
-  return contents;
-}
-
 /// Throws where --extensive names no field. Letter case counts as in all other options, although the reader
 /// of the data ignores it.
 void check_extensive(const InputOptions& options, const MultiMaterialData& data) {
@@ -292,6 +274,17 @@ MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
   return data;
 }
 
+MeshData load_mesh_data(const InputOptions& options, Progress& progress) {
+  if (const std::string option = options.raw.option(); !option.empty())
+    wrong_usage("{}: expected a file without a header, found {}", option, options.path.string());
+  MaterialDataOptions how = options.data;
+  if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
+  check_input_file(options.path);
+  MeshData data = read_mesh_data(options.path, how, progress);
+  note_mended_fractions(data.report, data.source, progress);
+  return data;
+}
+
 std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progress& progress) {
   const InputOptions options = with_main_file(given);
   static_cast<void>(raw_volume_of(options));
@@ -304,7 +297,12 @@ std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progre
   if (options.mending.tolerant || options.mending.gaps)
     wrong_usage("{}: expected given interfaces", options.mending.tolerant ? "--tolerant" : "--weld");
   check_input_file(options.path);
-  if (is_mesh(options.path)) return load_mesh_data(options, progress);
+  if (input_kind(options.path) == InputKind::kCells) {
+    auto contents =
+        std::make_shared<Input::Contents>(std::make_unique<MeshData>(load_mesh_data(options, progress)));
+    contents->facts.name = options.path.string();
+    return contents;
+  }
   check_memory_of_headers(options);
   auto data = std::make_unique<MultiMaterialData>(load_data(options, progress));
   check_memory_of_data(options, *data);

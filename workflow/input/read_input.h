@@ -8,6 +8,7 @@
 #include "adamas/resample.h"
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
+#include "core/data/mesh_data.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/api/error_targets.h"
 #include "interfaces/input/resampling_source.h"
@@ -17,6 +18,9 @@ namespace adamas::workflow {
 
 /// Reads data on a grid; notes what was mended in its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputOptions& options, Progress& progress);
+
+/// Reads data on a mesh; notes what was mended in its volume fractions beyond round-off.
+MeshData load_mesh_data(const InputOptions& options, Progress& progress);
 
 /// Reads given interfaces as they are.
 InterfaceMesh read_given_interfaces(const InputOptions& options);

@@ -111,6 +111,17 @@ bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
 }  // namespace
 
 MaterialDataSummary summarize_materials(const InputOptions& options, Progress& progress) {
+  if (!options.path.empty() && input_kind(options.path) == InputKind::kCells) {
+    const MeshData data = workflow::load_mesh_data(options, progress);
+    MaterialDataSummary summary;
+    summary.materials = to_volumes(data.materials, data.volumes());
+    if (data.labels.empty()) summary.fraction_sums = {data.report.sum_min, data.report.sum_max};
+    for (const MeshField& field : data.fields) {
+      const auto [low, high] = range_of(field);
+      summary.fields.push_back({field.name, field.unit, field.components, field.per_material(), low, high});
+    }
+    return summary;
+  }
   const MultiMaterialData data = workflow::load_data(options, progress);
   MaterialDataSummary summary;
   summary.materials = to_volumes(data.materials, data.volumes());
@@ -156,6 +167,7 @@ NetworkSummary summarize_interfaces(const InputOptions& options) {
 
 std::optional<VolumeSummary> summarize_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
                                               Progress& progress) {
+  if (!volume.stack && input_kind(volume.path) == InputKind::kCells) return {};
   if (volume.option().empty() && !is_volume_by_itself(volume.path, grid_wanted)) return {};
   VolumeReader reader = open_volume_input(volume, outputs, progress);
   const VolumeGrid& grid = reader.grid();

@@ -121,6 +121,15 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
     check(input);
     return input;
   }
+  if (kind == InputKind::kCells) {
+    // Its materials are cut, by the interfaces between them; its fields are not.
+    const std::shared_ptr<Input::Contents> contents = load_contents(options, progress);
+    input.network = contents->source(reconstruction_of(request), progress);
+    input.network->fields = nullptr;
+    input.interfaces = network_mesh(*input.network->network, input.network->materials, input.network->name);
+    check(input);
+    return input;
+  }
   // Names of regions also serve for the original interfaces of a mesh.
   InputOptions without_names = options;
   without_names.region_names.clear();
