@@ -318,9 +318,9 @@ Figures print_store(const std::string& path, Session& session) {
 }
 
 bool has_data(const FileSummary& s, const InputOptions& options) {
-  return !options.material_option().empty() ||
+  return !options.material_option().empty() || s.blocks > 1 ||
          std::any_of(s.arrays.begin(), s.arrays.end(),
-                     [](const ArraySummary& a) { return a.fraction_of || a.name == "block"; });
+                     [](const ArraySummary& a) { return a.fraction_of.has_value(); });
 }
 
 /// Whether the polygons of a file are interfaces: they have materials on both sides.
@@ -360,11 +360,12 @@ void check_options(const Options& all) {
   const InputOptions& options = all.input;
   const InputKind kind = input_kind(options.path);
   const std::string of_volume = all.volume.option(), of_grid = options.grid_option();
-  if (!of_volume.empty() && (is_store(options.path) || kind == InputKind::kMesh))
+  if (!of_volume.empty() && (is_store(options.path) || kind == InputKind::kMesh || kind == InputKind::kCells))
     wrong_usage("{}: expected a volume as INPUT, found {}", of_volume, options.path.string());
   if (!of_volume.empty() && !of_grid.empty())
     wrong_usage("{} and {}: expected one of them", of_volume, of_grid);
-  if ((kind != InputKind::kGrid || is_store(options.path)) && !of_grid.empty())
+  const bool with_materials = kind == InputKind::kGrid || kind == InputKind::kCells;
+  if ((!with_materials || is_store(options.path)) && !of_grid.empty())
     wrong_usage("{}: expected data on a grid as INPUT", of_grid);
   check_region_names(options);
 }
@@ -447,8 +448,9 @@ void add_info(const Command& app, Session& session) {
       add_command(app, session, "info", "What is in a file", "adamas info cth.vtr", run);
   command.add_file(
       "input", "FILE",
-      "Any file that can be read: " + grid_files() +
-          ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, .txt), a surface "
+      "Any file that can be read: " + grid_files() + ", " + mesh_files() +
+          ", a mesh from adamas resample (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, "
+          ".txt), a surface "
           "(.obj, .off, .ply, .stl) or a store (.adm). Or a series: a .pvd, a pattern of names in quotes, "
           "as \"run_%04d.vti\", or a file with several times",
       options.input.path);

@@ -41,6 +41,8 @@ std::pair<std::string, std::string> parse_named_file(const std::string& option, 
 
 }  // namespace
 
+std::string mesh_files() { return fmt::format("data on a mesh of cells ({})", mesh_endings()); }
+
 std::string grid_files() { return fmt::format("data on a grid ({} and other images)", grid_endings()); }
 
 void add_material_options(const Command& command, InputOptions& options) {

@@ -15,6 +15,8 @@ namespace adamas::cli {
 
 /// Returns the list of grid files in help texts; messages of the readers name others.
 std::string grid_files();
+/// Names files with data on a mesh.
+std::string mesh_files();
 
 /// Adds the options of volume fractions, labels and fields on a grid. `field` describes `--field`, whose
 /// meaning some commands widen: `take_field` is called with its text.

@@ -162,7 +162,7 @@ void add_reconstruct(const Command& app, Session& session) {
       app, session, "reconstruct", "Interface meshes from volume fractions, or of a network",
       "adamas reconstruct cth.vtr --simplify 0.5% -o interfaces.vtp --picture interfaces.png", run);
   command.add_file("input", "FILE",
-                   "What to reconstruct: " + grid_files() +
+                   "What to reconstruct: " + grid_files() + ", " + mesh_files() +
                        ", or a network to check and write anew (.vtp, .ply, .arec, .txt)",
                    options.input.path);
   command.add_option("-o,--output", "FILE",

@@ -343,7 +343,7 @@ void add_resample(const Command& app, Session& session) {
                   run);
   command.add_option(
       "input", "FILE...",
-      "What to resample: " + grid_files() +
+      "What to resample: " + grid_files() + ", " + mesh_files() +
           ", or a labelled network (.vtp, .ply, .arec, .txt). Or a series of data on one grid: a .pvd, "
           "several files, or a pattern of their names in quotes, as \"run_%04d.vti\"",
       options.inputs);

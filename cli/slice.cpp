@@ -185,7 +185,7 @@ void add_slice(const Command& app, Session& session) {
   SliceRequest& request = options.request;
   command.add_option(
       "input", "FILE...",
-      "What to cut: " + grid_files() +
+      "What to cut: " + grid_files() + ", the materials of " + mesh_files() +
           ", a mesh from adamas resample (.vtu), interfaces (.vtp, .ply, .arec, .txt), or a store from "
           "adamas store (.adm). Or a series of data or meshes: a .pvd, several files, or a pattern of "
           "their names in quotes, as \"run_%04d.vti\". A stored series and a file with several times are "

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "core/geometry/length_limits.h"
@@ -67,6 +68,7 @@ void PolyhedralMesh::join_faces(const std::string& name, const std::vector<Index
   cell_faces_.reserve(ends.size());
   Index f = 0;
   for (Index cell = 0; cell < cell_ends.size(); ++cell) {
+    if (f >= cell_ends[cell]) fail("{}: expected cells with faces, found none of cell {}", name, cell);
     for (; f < cell_ends[cell]; ++f) {
       const std::span<const Index> own = part(points, ends, f);
       if (own.size() < 3)
@@ -257,6 +259,11 @@ void PolyhedralMesh::turn_alike(const std::string& name, std::vector<signed char
   }
   tangled_ =
       static_cast<std::size_t>(std::ranges::count_if(cell_volumes_, [](double v) { return !(v > 0); }));
+}
+
+double PolyhedralMesh::typical_size() const {
+  std::vector<double> volumes = cell_volumes_;
+  return std::cbrt(std::abs(median(volumes)));
 }
 
 bool PolyhedralMesh::fills_box() const {

@@ -54,6 +54,8 @@ class PolyhedralMesh {
   /// The volume of a cell: the sum of those of its tetrahedra, which is exact for faces as they are defined
   /// here. It is 0 or less for a cell that is tangled or collapsed, so that volumes of regions add up.
   [[nodiscard]] double cell_volume(std::size_t c) const { return cell_volumes_[c]; }
+  /// The size of a cube with the median of the cells' volumes.
+  [[nodiscard]] double typical_size() const;
   /// The number of cells whose volume is not above 0.
   [[nodiscard]] std::size_t tangled_cells() const { return tangled_; }
   /// The cells round each point: those of point p are `cells_round(p)`, ascending.

@@ -97,6 +97,7 @@ FileSummary summarize_cells(const std::filesystem::path& path) {
   summary.kind = file.kind;
   set_points(file.points, summary);
   summary.cells = file.cell_ends.size();
+  summary.blocks = file.blocks.size();
   summary.remark = file.remark;
   add_arrays(std::move(file.arrays), summary);
   return summary;
@@ -106,6 +107,7 @@ void add_arrays(const char* location, const std::vector<NamedArray>& arrays, Fil
   constexpr std::array kTypes{"float64", "float32", "int32", "uint8", "string"};
   for (const NamedArray& array : arrays) {
     ArraySummary item{array.name, kTypes.at(array.values.index()), location, array.components};
+    item.fraction_of = fraction_material(array.name);
     std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
     summary.arrays.push_back(std::move(item));
   }
@@ -140,6 +142,8 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
       if (file_extension(path) != ".vtu") return summarize_cells(path);
       try {
         return summarize_mesh(path);
+      } catch (const Cancelled&) {
+        throw;
       } catch (const Error&) {
         // It may have other cells than tetrahedra; other faults are found again.
         return summarize_cells(path);

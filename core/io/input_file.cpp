@@ -29,8 +29,23 @@ std::size_t check_input_file(const std::filesystem::path& path) {
     fail("{}: expected a readable file: {}", path.string(), std::strerror(errno));
   const auto size = std::filesystem::file_size(path, code);
   if (code) fail("{}: expected a readable file: {}", path.string(), code.message());
+  // A .foam is an empty file that stands for the folder that it lies in.
+  if (file_extension(path) == ".foam") return static_cast<std::size_t>(size_of_folder(path.parent_path()));
   if (size == 0) fail("{}: expected data, found an empty file", path.string());
   return static_cast<std::size_t>(size);
+}
+
+std::uintmax_t size_of_folder(const std::filesystem::path& folder) {
+  std::error_code code;
+  std::uintmax_t sum = 0;
+  const std::filesystem::recursive_directory_iterator end;
+  for (std::filesystem::recursive_directory_iterator at(folder.empty() ? "." : folder, code);
+       !code && at != end; at.increment(code)) {
+    std::error_code of_file;
+    const std::uintmax_t size = at->is_regular_file(of_file) ? at->file_size(of_file) : 0;
+    if (!of_file) sum += size;
+  }
+  return sum;
 }
 
 namespace {

@@ -8,9 +8,11 @@
 
 namespace adamas::io {
 
-/// The size in bytes of a file to read. Throws Error if it is missing, a folder, no regular file, unreadable
-/// or empty.
+/// The size in bytes of a file to read; of an OpenFOAM case (.foam) that of all files in its folder. Throws
+/// Error if it is missing, a folder, no regular file, unreadable or empty.
 std::size_t check_input_file(const std::filesystem::path& path);
+/// The bytes of all files in a folder and below it.
+std::uintmax_t size_of_folder(const std::filesystem::path& folder);
 
 /// The whole content of a checked input file.
 std::string read_file(const std::filesystem::path& path);

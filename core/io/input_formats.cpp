@@ -116,6 +116,14 @@ std::string list_grid_endings(std::string_view last) {
   return list([](const InputFormat& format) { return format.gives_grids(); }, last);
 }
 
+std::string list_mesh_endings(std::string_view last) {
+  return list(
+      [](const InputFormat& format) {
+        return format.kind == InputKind::kCells || format.kind == InputKind::kMesh;
+      },
+      last);
+}
+
 std::string list_volume_endings(std::string_view last) {
   return list([](const InputFormat& format) { return format.gives_volumes(); }, last);
 }

@@ -87,6 +87,7 @@ const InputFormat& find_volume_format(const std::filesystem::path& path);
 /// them.
 std::string list_grid_endings(std::string_view last);
 std::string list_volume_endings(std::string_view last);
+std::string list_mesh_endings(std::string_view last);
 
 /// The series that a file holds. For NIfTI these are its times, in seconds if the header states a unit of
 /// time. For HDF5 they are the data sets along three axes in the group `array`, in natural order (9 before

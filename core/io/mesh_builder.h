@@ -30,12 +30,16 @@ class PointMerger {
   std::unordered_multimap<std::uint64_t, std::uint32_t> places_;
 };
 
+/// The faces of cells of the common shapes, by the places of their points, which are in the order of VTK, of
+/// ExodusII and, but for the wedge, of Silo.
+using CellFaces = std::vector<std::vector<std::size_t>>;
+extern const CellFaces kTetrahedronFaces, kPyramidFaces, kWedgeFaces, kHexahedronFaces;
+
 /// Appends a face of the last cell, unless its points are fewer than three: edges whose ends are one point
-/// vanish, and so do faces that become an edge.
+/// vanish, and so do faces that become an edge. Throws Error if there are too many points of faces.
 void append_face(std::span<const std::uint32_t> points, MeshFile& file);
-/// Ends a cell, whose faces have been appended.
-inline void end_cell(MeshFile& file) {
-  file.cell_ends.push_back(static_cast<std::uint32_t>(file.face_ends.size()));
-}
+/// Ends a cell, whose faces have been appended. Two faces with the same points vanish; a cell that has
+/// collapsed, so that it encloses nothing, is dropped. Returns whether the cell stays.
+bool end_cell(MeshFile& file);
 
 }  // namespace adamas::io

@@ -22,24 +22,16 @@ class Reader {
     file_ = read_mesh_file(path_);
     data_.source = path_.string();
     refuse_options();
-    if (file_.flat && !options_.extrude)
-      fail(
-          "{}: expected cells with a volume, found those of two dimensions: pass --extrude H for cells of "
-          "this "
-          "height",
-          data_.source);
-    if (!file_.flat && options_.extrude)
-      fail("{}: --extrude: expected cells of two dimensions, found cells with a volume", data_.source);
-    if (file_.flat) extrude(file_, *options_.extrude);
+    extrude_if_flat(data_.source, file_);
     choose_blocks();
     progress_.step("joining cells", -1);
     data_.mesh = PolyhedralMesh::make(data_.source, std::move(file_.points), std::move(file_.face_points),
                                       file_.face_ends, file_.cell_ends);
     if (data_.mesh.tangled_cells() > 0 && options_.note)
-      options_.note(fmt::format("{}: {} of {} cells are tangled or have no volume: they are left as they are",
-                                data_.source, data_.mesh.tangled_cells(), data_.mesh.cell_count()));
-    const std::vector<std::string>& names =
-        options_.labels == MeshFile::kBlocks ? file_.blocks : file_.material_names;
+      options_.note(
+          fmt::format("{}: {} of {} cells are tangled: interfaces in them are as good as they can be",
+                      data_.source, data_.mesh.tangled_cells(), data_.mesh.cell_count()));
+    const std::vector<std::string>& names = by_blocks_ ? file_.blocks : file_.material_names;
     MaterialArrays arrays(path_, options_, std::move(file_.arrays), names,
                           [this](const std::string& option, const std::filesystem::path& file) {
                             return read_other(option, file);
@@ -66,23 +58,51 @@ class Reader {
            *options_.centering == Centering::kCells ? "cells" : "points");
   }
 
+  void extrude_if_flat(const std::string& name, MeshFile& file) const {
+    if (file.flat && !options_.extrude)
+      fail(
+          "{}: expected cells with a volume, found those of two dimensions: pass --extrude H for cells of "
+          "this "
+          "height",
+          name);
+    if (!file.flat && options_.extrude)
+      fail("{}: --extrude: expected cells of two dimensions, found cells with a volume", name);
+    if (file.flat) extrude(file, *options_.extrude);
+  }
+
   /// Takes the blocks for materials if nothing else says what these are.
   void choose_blocks() {
     const bool named = MaterialArrays::name_materials(options_, file_.arrays, file_.material_names);
     if (file_.blocks.empty() || named) return;
-    options_.labels = MeshFile::kBlocks;
+    by_blocks_ = true;
+    options_.labels = kBlocks;
+    GridArray array;
+    array.name = kBlocks;
+    array.type = "int32";
+    array.centering = Centering::kCells;
+    array.values = std::move(file_.block_of_cell);
+    file_.arrays.insert(file_.arrays.begin(), std::move(array));
     if (options_.note)
       options_.note(
           fmt::format("{}: no array has volume fractions or labels: its {} blocks are the materials",
                       data_.source, file_.blocks.size()));
   }
 
+  /// Reads the one array of another file, which has to be on the same mesh.
   GridArray read_other(const std::string& option, const std::filesystem::path& file) {
     progress_.step("read " + file.filename().string(), 0.5);
     MeshFile other = read_mesh_file(file);
-    if (other.cell_ends.size() != data_.mesh.cell_count())
-      fail("{}: {}: expected the mesh of {} with {} cells, found {}", file.string(), option, data_.source,
-           data_.mesh.cell_count(), other.cell_ends.size());
+    extrude_if_flat(file.string(), other);
+    const std::vector<Vec3>& points = data_.mesh.points();
+    if (other.cell_ends.size() != data_.mesh.cell_count() || other.points.size() != points.size())
+      fail("{}: {}: expected the mesh of {} with {} cells and {} points, found {} and {}", file.string(),
+           option, data_.source, data_.mesh.cell_count(), points.size(), other.cell_ends.size(),
+           other.points.size());
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (!(distance(points[p], other.points[p]) <= kSamePlace * data_.mesh.box().diagonal()))
+        fail("{}: {}: expected the mesh of {}, found point {} at another place", file.string(), option,
+             data_.source, p);
+    }
     if (other.arrays.size() != 1)
       fail("{}: {}: expected a file of one array, found {}", file.string(), option, names_of(other.arrays));
     return std::move(other.arrays[0]);
@@ -142,8 +162,7 @@ class Reader {
     for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
       std::vector<FieldArray> own;
       for (GridArray& array : arrays) {
-        if (array.centering == centering && array.name != MeshFile::kBlocks)
-          own.push_back({array.name, array.components, array.take_field()});
+        if (array.centering == centering) own.push_back({array.name, array.components, array.take_field()});
       }
       for (Field& field : assemble_fields(data_.source, data_.materials, std::move(own))) {
         const auto known = std::ranges::find(data_.fields, field.name, &MeshField::name);
@@ -157,11 +176,17 @@ class Reader {
     }
   }
 
+  /// The name of the array that says which block a cell belongs to.
+  static constexpr const char* kBlocks = "block";
+  /// Two meshes are the same if their points are this near to each other, in relation to the diagonal.
+  static constexpr double kSamePlace = 1e-6;
+
   const std::filesystem::path& path_;
   MaterialDataOptions options_;
   Progress& progress_;
   MeshFile file_;
-  double step_ = 0;  // see FractionReport
+  bool by_blocks_ = false;  // whether blocks are the materials
+  double step_ = 0;         // see FractionReport
   MeshData data_;
 };
 

@@ -20,19 +20,28 @@ namespace adamas::io {
 
 template <>
 inline constexpr auto kSentMembers<MeshFile> =
-    std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points, &MeshFile::face_ends,
-               &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,      &MeshFile::material_names,
-               &MeshFile::remark,    &MeshFile::flat};
+    std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points,  &MeshFile::face_ends,
+               &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,       &MeshFile::material_names,
+               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell};
 
 namespace {
 
 /// Throws unless the sizes that the reader has set fit each other, before its arrays are indexed.
 void check_sent(const std::string& name, const MeshFile& file) {
-  const auto ascends = [](const std::vector<std::uint32_t>& ends, std::size_t last) {
-    return std::ranges::is_sorted(ends) && (ends.empty() ? 0 : ends.back()) == last;
+  const auto ascends = [](const std::vector<std::uint32_t>& ends, std::size_t last, std::size_t least) {
+    std::size_t before = 0;
+    for (const std::uint32_t end : ends) {
+      if (end < before + least) return false;
+      before = end;
+    }
+    return before == last;
   };
-  bool fits =
-      ascends(file.face_ends, file.face_points.size()) && ascends(file.cell_ends, file.face_ends.size());
+  bool fits = ascends(file.face_ends, file.face_points.size(), 3) &&
+              ascends(file.cell_ends, file.face_ends.size(), 1) &&
+              (!file.flat || file.cell_ends.size() == file.face_ends.size()) &&
+              (file.blocks.empty() || file.block_of_cell.size() == file.cell_ends.size());
+  for (const std::int32_t block : file.block_of_cell)
+    fits = fits && block >= 0 && static_cast<std::size_t>(block) < file.blocks.size();
   for (const GridArray& array : file.arrays) {
     const std::size_t items =
         array.centering == Centering::kCells ? file.cell_ends.size() : file.points.size();
@@ -77,15 +86,13 @@ bool is_legacy_mesh(const std::filesystem::path& path) {
          beginning.find("DATASET STRUCTURED_GRID") != std::string_view::npos;
 }
 
+/// Returns whether the name that resampled meshes have is missing at the beginning of a file, where adamas
+/// writes it.
 bool is_foreign_vtu(const std::filesystem::path& path) {
-  try {
-    const std::vector<XmlTag> tags = read_xml_tags(supply_file(FileHandle::open(path), 0), path.string());
-    return std::ranges::none_of(tags,
-                                [](const XmlTag& tag) { return tag.value("Name") == kResampledVersion; });
-  } catch (const Error&) {
-    // Its reader says what is wrong.
-    return false;
-  }
+  std::string bytes(std::size_t{1} << 20, '\0');
+  const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
+  return std::string_view(bytes).substr(0, size).find(fmt::format("Name=\"{}\"", kResampledVersion)) ==
+         std::string_view::npos;
 }
 
 }  // namespace
@@ -104,9 +111,14 @@ void send_cells(const ReaderRequest& request, ByteSink& sink) {
 }
 
 MeshFile read_mesh_file(const std::filesystem::path& path) {
-  const ReaderRequest request = request_of(LibraryReader::kCells, path);
+  ReaderRequest request = request_of(LibraryReader::kCells, path);
   if (file_extension(path) == ".vtu")
     check_vtk_counts(read_xml_tags(supply_file(FileHandle::open(path), 0), path.string()), path);
+  // Such a file stands for others beside it.
+  const std::string extension = file_extension(path);
+  for (const char* whole : {".pvtu", ".pvts", ".vtm", ".silo", ".pdb"}) {
+    if (extension == whole) request.input_bytes = size_of_folder(path.parent_path());
+  }
   MeshFile file = receive_from_child<MeshFile>(request);
   check_sent(path.string(), file);
   show_names(file.arrays, file.material_names);

@@ -12,9 +12,6 @@ namespace adamas::io {
 
 /// The cells of a mesh as a file has them, in one piece: points of several blocks at one place are one.
 struct MeshFile {
-  /// The name of the array of whole numbers that says which block of several a cell belongs to.
-  static constexpr const char* kBlocks = "block";
-
   std::string kind;  ///< "VTK XML unstructured grid", ...
   std::vector<Vec3> points;
   /// The faces of the cells, as PolyhedralMesh::make() takes them.
@@ -22,6 +19,7 @@ struct MeshFile {
   bool flat = false;  ///< whether cells have no volume: each is one face, in the plane of x and y
   std::vector<GridArray> arrays;
   std::vector<std::string> blocks;          ///< the names of the blocks, if there are several
+  std::vector<std::int32_t> block_of_cell;  ///< the block of each cell then; else empty
   std::vector<std::string> material_names;  ///< as in GridFile
   std::string remark;                       ///< what else the file holds and is not read; usually empty
 };
@@ -31,15 +29,17 @@ struct MeshFile {
 /// written as a resampled mesh.
 bool is_mesh_by_header(const std::filesystem::path& path);
 
-/// Reads the cells of a mesh: .vtu, .pvtu, .vts, .pvts, .vtm, legacy .vtk, ExodusII, CGNS, and the cases of
-/// OpenFOAM (a file NAME.foam in the case's folder). Of several times the last one is read.
-/// Cells of two dimensions beside others of three are left out, and so are copies of cells of other pieces.
-/// The libraries may crash on a corrupt file, so they run in a child process (read_in_child).
+/// Reads the cells of a mesh: .vtu, .pvtu, .vts, .pvts, .vtm, legacy .vtk, VTKHDF, ExodusII, CGNS, Silo, and
+/// the cases of OpenFOAM (a file NAME.foam in the case's folder). Of several times the last one is read.
+/// Cells of two dimensions beside others of three are left out, and so are collapsed cells and copies of
+/// cells of other pieces; points at one place are one. The libraries may crash on a corrupt file, so they run
+/// in a child process (read_in_child).
 MeshFile read_mesh_file(const std::filesystem::path& path);
 /// Reads a file as read_mesh_file does, but in this process.
 MeshFile read_mesh_with_vtk(const std::filesystem::path& path);
-/// Reads a file of Silo in this process: the first mesh of several blocks or, if there is none, the first with
-/// materials. Mixed zones become volume fractions, and variables with values for them fields per material.
+/// Reads a file of Silo in this process: the first mesh of several blocks or, if there is none, the first
+/// with materials. Mixed zones become volume fractions, and variables with values for them fields per
+/// material.
 MeshFile read_silo_mesh(const std::filesystem::path& path);
 
 /// Makes prisms of this height of the cells of a flat mesh.

@@ -82,14 +82,16 @@ class SiloReader {
  public:
   explicit SiloReader(const std::filesystem::path& path) : path_(path), name_(path.string()) {
     DBShowErrors(DB_NONE, nullptr);
-    // Silo checks nothing of this by itself; fixed offsets are those of the format.
-    DBSetAllowLongStrComponents(1);
   }
 
   MeshFile run() {
     DBfile* const file = open(path_);
     const Choice choice = choose(file);
-    for (const Block& block : choice.blocks) add_block(block, choice);
+    for (const Block& block : choice.blocks) {
+      add_block(block, choice);
+      // Silo holds a limited number of files open.
+      std::erase_if(files_, [&](const auto& other) { return other.first != path_; });
+    }
     if (file_.cell_ends.empty()) fail("{}: expected zones of a mesh, found none", name_);
     finish(choice);
     return std::move(file_);
@@ -103,7 +105,8 @@ class SiloReader {
     int components = 1;
     std::vector<double> values;
     std::map<std::string, std::vector<double>> of_materials;  ///< cells that have none are those of `values`
-    bool complete = true;                                     ///< whether all blocks have it
+    bool complete = true;      ///< whether all blocks have it, on zones or nodes
+    bool mixed_apart = false;  ///< whether it has values for mixed zones that are not those of the material
   };
 
   DBfile* open(const std::filesystem::path& path) {
@@ -131,11 +134,12 @@ class SiloReader {
   }
 
   /// The names of the blocks of a multi-block object; empty for a block that is none.
-  static std::vector<std::string> block_names(int count, char** names, const char* files, const char* blocks,
-                                              const int* empty, int empty_count) {
+  static std::vector<std::string> block_names(DBfile* file, int count, char** names, const char* files,
+                                              const char* blocks, const int* empty, int empty_count) {
     std::vector<std::string> result;
-    const auto scheme = [](const char* format) {
-      return format != nullptr ? DBMakeNamescheme(format) : nullptr;
+    // Arrays that a scheme refers to are objects of the file.
+    const auto scheme = [file](const char* format) {
+      return format != nullptr ? DBMakeNamescheme(format, nullptr, file, nullptr) : nullptr;
     };
     DBnamescheme* const of_files = names == nullptr ? scheme(files) : nullptr;
     DBnamescheme* const of_blocks = names == nullptr ? scheme(blocks) : nullptr;
@@ -145,9 +149,9 @@ class SiloReader {
         name = text(names[n]);
       } else if (std::find(empty, empty + empty_count, n) == empty + empty_count) {
         // The two names are in one buffer of Silo's.
-        const std::string file = of_files != nullptr ? text(DBGetName(of_files, n)) : "";
+        const std::string other = of_files != nullptr ? text(DBGetName(of_files, n)) : "";
         name = of_blocks != nullptr ? text(DBGetName(of_blocks, n)) : "";
-        if (!file.empty()) name = file + ":" + name;
+        if (!other.empty()) name = other + ":" + name;
       }
       result.push_back(last_part(name) == "EMPTY" ? "" : name);
     }
@@ -162,15 +166,28 @@ class SiloReader {
     return toc->nmultimesh > 0 ? choose_blocks(file, *toc) : choose_single(file, *toc);
   }
 
+  /// Finds the first multi-block mesh that is not one of points or of solid geometry.
+  std::string first_volume_mesh(DBfile* file, const DBtoc& toc) const {
+    const std::vector<std::string> names(toc.multimesh_names, toc.multimesh_names + toc.nmultimesh);
+    for (const std::string& name : names) {
+      const Owned<DBmultimesh, DBFreeMultimesh> blocks(DBGetMultimesh(file, name.c_str()));
+      if (blocks == nullptr) fail_object(name);
+      const int type =
+          blocks->meshtypes != nullptr && blocks->nblocks > 0 ? blocks->meshtypes[0] : blocks->block_type;
+      if (type != DB_POINTMESH && type != DB_CSGMESH) return name;
+    }
+    fail("{}: expected a quadrilateral or unstructured mesh, found others", name_);
+  }
+
   Choice choose_blocks(DBfile* file, const DBtoc& toc) {
     Choice choice;
-    const std::string mesh = text(toc.multimesh_names[0]);
+    const std::string mesh = first_volume_mesh(file, toc);
     std::vector<std::string> materials(toc.multimat_names, toc.multimat_names + toc.nmultimat),
         variables(toc.multivar_names, toc.multivar_names + toc.nmultivar);
     if (toc.nmultimesh > 1) choice.remark = fmt::format("of {} meshes '{}' is read", toc.nmultimesh, mesh);
     const Owned<DBmultimesh, DBFreeMultimesh> blocks(DBGetMultimesh(file, mesh.c_str()));
     if (blocks == nullptr) fail_object(mesh);
-    for (const std::string& name : block_names(blocks->nblocks, blocks->meshnames, blocks->file_ns,
+    for (const std::string& name : block_names(file, blocks->nblocks, blocks->meshnames, blocks->file_ns,
                                                blocks->block_ns, blocks->empty_list, blocks->empty_cnt))
       choice.blocks.push_back({name, {}, {}});
     for (const std::string& name : materials) {
@@ -178,7 +195,7 @@ class SiloReader {
       if (found == nullptr) fail_object(name);
       if (static_cast<std::size_t>(found->nmats) != choice.blocks.size()) continue;
       if (found->mmesh_name != nullptr && last_part(found->mmesh_name) != mesh) continue;
-      const auto names = block_names(found->nmats, found->matnames, found->file_ns, found->block_ns,
+      const auto names = block_names(file, found->nmats, found->matnames, found->file_ns, found->block_ns,
                                      found->empty_list, found->empty_cnt);
       for (std::size_t n = 0; n < names.size(); ++n) choice.blocks[n].material = names[n];
       for (int m = 0; found->material_names != nullptr && found->matnos != nullptr && m < found->nmatnos; ++m)
@@ -190,7 +207,7 @@ class SiloReader {
       if (found == nullptr) fail_object(name);
       if (static_cast<std::size_t>(found->nvars) != choice.blocks.size()) continue;
       if (found->mmesh_name != nullptr && last_part(found->mmesh_name) != mesh) continue;
-      const auto names = block_names(found->nvars, found->varnames, found->file_ns, found->block_ns,
+      const auto names = block_names(file, found->nvars, found->varnames, found->file_ns, found->block_ns,
                                      found->empty_list, found->empty_cnt);
       choice.variables.push_back(name);
       for (std::size_t n = 0; n < names.size(); ++n) choice.blocks[n].variables.push_back(names[n]);
@@ -241,10 +258,15 @@ class SiloReader {
 
   /// What is known of the zones and nodes of a block that are real.
   struct Taken {
-    std::vector<std::size_t> zones, nodes;            ///< the places of those that are new cells and points
+    /// The places of those that are new cells and points; of a quadrilateral mesh with the first index as the
+    /// fastest.
+    std::vector<std::size_t> zones, nodes;
     std::array<std::size_t, 3> node_counts{1, 1, 1};  ///< of a quadrilateral mesh
-    bool is_quad = false;
     std::size_t zone_count = 0, node_count = 0;
+    [[nodiscard]] std::array<std::size_t, 3> zone_counts() const {
+      const auto& [nx, ny, nz] = node_counts;
+      return {nx - 1, ny - 1, nz > 1 ? nz - 1 : 1};
+    }
   };
 
   void set_dimensions(int dimensions) {
@@ -280,9 +302,9 @@ class SiloReader {
 
   Taken add_quad_mesh(const DBquadmesh& mesh) {
     set_dimensions(mesh.ndims);
+    note_coordinates(mesh.coord_sys);
     Taken taken;
-    taken.is_quad = true;
-    std::array<std::size_t, 3> first{0, 0, 0}, last{1, 1, 1}, stride{0, 0, 0};
+    std::array<std::size_t, 3> first{0, 0, 0}, last{1, 1, 1};
     const auto axes = static_cast<std::size_t>(mesh.ndims);
     for (std::size_t a = 0; a < axes; ++a) {
       if (mesh.dims[a] < 2)
@@ -290,23 +312,22 @@ class SiloReader {
       taken.node_counts[a] = static_cast<std::size_t>(mesh.dims[a]);
       first[a] = static_cast<std::size_t>(std::clamp(mesh.min_index[a], 0, mesh.dims[a] - 1));
       last[a] = static_cast<std::size_t>(std::clamp(mesh.max_index[a], 0, mesh.dims[a] - 1));
-      stride[a] = static_cast<std::size_t>(std::max(mesh.stride[a], 0));
     }
     const auto [nx, ny, nz] = taken.node_counts;
     taken.node_count = nx * ny * nz;
     taken.zone_count = (nx - 1) * (ny - 1) * (axes == 3 ? nz - 1 : 1);
-    x_fastest_ = mesh.major_order == DB_ROWMAJOR;
     const auto place = [&](std::size_t i, std::size_t j, std::size_t k) {
-      return i * stride[0] + j * stride[1] + k * stride[2];
+      return place_in({i, j, k}, taken.node_counts, mesh.major_order);
     };
-    if (place(nx - 1, ny - 1, nz - 1) >= taken.node_count)
-      fail("{}: expected strides within {} nodes, found others", name_, taken.node_count);
+    // What is not checked here is read beyond its end by no one but this process.
+    if (taken.node_count > kMostNodes)
+      fail("{}: expected at most {} nodes, found {}", name_, kMostNodes, taken.node_count);
     std::vector<Vec3> points(taken.node_count);
     for (std::size_t k = 0; k < nz; ++k) {
       for (std::size_t j = 0; j < ny; ++j) {
         for (std::size_t i = 0; i < nx; ++i) {
           const std::array<std::size_t, 3> index{i, j, k};
-          Vec3& p = points[place(i, j, k)];
+          Vec3& p = points[place_in(index, taken.node_counts, DB_ROWMAJOR)];
           for (std::size_t a = 0; a < axes; ++a)
             p[static_cast<int>(a)] = number_at(mesh.coords[a], mesh.datatype,
                                                mesh.coordtype == DB_COLLINEAR ? index[a] : place(i, j, k));
@@ -324,34 +345,53 @@ class SiloReader {
     std::vector<Index> face;
     const auto add_face = [&](const auto& corners, std::size_t i, std::size_t j, std::size_t k) {
       face.clear();
-      for (const auto& [di, dj, dk] : corners) face.push_back(numbers[place(i + di, j + dj, k + dk)]);
+      for (const auto& [di, dj, dk] : corners)
+        face.push_back(numbers[place_in({i + di, j + dj, k + dk}, taken.node_counts, DB_ROWMAJOR)]);
       append_face(face, file_);
     };
     for (std::size_t k = first[2]; k < last[2]; ++k) {
       for (std::size_t j = first[1]; j < last[1]; ++j) {
         for (std::size_t i = first[0]; i < last[0]; ++i) {
+          const std::size_t zone = place_in({i, j, k}, taken.zone_counts(), DB_ROWMAJOR);
+          if (mesh.ghost_zone_labels != nullptr &&
+              mesh.ghost_zone_labels[reordered(zone, taken.zone_counts(), mesh.major_order)] != 0)
+            continue;
           if (file_.flat) {
             add_face(kFaces[4], i, j, k);
           } else {
             for (const auto& corners : kFaces) add_face(corners, i, j, k);
           }
-          end_cell(file_);
-          taken.zones.push_back(zone_place({i, j, k}, taken));
+          const bool stays = end_cell(file_);
+          if (stays) taken.zones.push_back(zone);
         }
       }
     }
     return taken;
   }
 
-  /// The place of a zone of a quadrilateral mesh in arrays of zones.
-  [[nodiscard]] std::size_t zone_place(const std::array<std::size_t, 3>& zone, const Taken& taken) const {
-    const auto& n = taken.node_counts;
-    const std::size_t mx = n[0] - 1, my = n[1] - 1, mz = n[2] > 1 ? n[2] - 1 : 1;
-    if (x_fastest_) return zone[0] + mx * (zone[1] + my * zone[2]);
-    return zone[2] + mz * (zone[1] + my * zone[0]);
+  /// The place of a node or zone in an array whose first index is the fastest (row-major, as Silo calls it)
+  /// or the slowest.
+  static std::size_t place_in(const std::array<std::size_t, 3>& index,
+                              const std::array<std::size_t, 3>& counts, int major_order) {
+    if (major_order == DB_ROWMAJOR) return index[0] + counts[0] * (index[1] + counts[1] * index[2]);
+    return index[2] + counts[2] * (index[1] + counts[1] * index[0]);
+  }
+  /// The place in an array of this order of what has this place in one whose first index is the fastest.
+  static std::size_t reordered(std::size_t place, const std::array<std::size_t, 3>& counts, int major_order) {
+    if (major_order == DB_ROWMAJOR) return place;
+    return place_in({place % counts[0], place / counts[0] % counts[1], place / (counts[0] * counts[1])},
+                    counts, major_order);
+  }
+
+  /// Notes coordinates that are not those of straight axes: they are taken as if they were.
+  void note_coordinates(int system) {
+    if ((system == DB_CYLINDRICAL || system == DB_SPHERICAL) &&
+        file_.remark.find("coordinates") == std::string::npos)
+      add_remark("its coordinates are not Cartesian, and are taken as if they were");
   }
 
   Taken add_ucd_mesh(const DBucdmesh& mesh) {
+    note_coordinates(mesh.coord_sys);
     Taken taken;
     taken.node_count = static_cast<std::size_t>(std::max(mesh.nnodes, 0));
     std::vector<Vec3> points(taken.node_count);
@@ -359,7 +399,7 @@ class SiloReader {
       for (std::size_t n = 0; n < points.size(); ++n)
         points[n][a] = number_at(mesh.coords[a], mesh.datatype, n);
     }
-    if (mesh.phzones != nullptr) return add_polyhedra(*mesh.phzones, mesh.origin, points, std::move(taken));
+    if (mesh.phzones != nullptr) return add_polyhedra(*mesh.phzones, points, std::move(taken));
     if (mesh.zones == nullptr) fail("{}: expected zones of mesh '{}', found none", name_, text(mesh.name));
     return add_zones(*mesh.zones, mesh.ndims, points, std::move(taken));
   }
@@ -376,7 +416,11 @@ class SiloReader {
     taken.zone_count = static_cast<std::size_t>(std::max(zones.nzones, 0));
     const auto list = std::span(zones.nodelist, static_cast<std::size_t>(std::max(zones.lnodelist, 0)));
     // A real zone's faces, or its nodes alone if it has one of the common shapes.
-    std::vector<std::vector<std::vector<std::size_t>>> real;
+    struct Zone {
+      std::vector<std::vector<std::size_t>> faces;
+      std::size_t place;
+    };
+    std::vector<Zone> real;
     std::vector<char> used(points.size(), 0);
     std::size_t at = 0, zone = 0;
     const auto next = [&] {
@@ -408,56 +452,57 @@ class SiloReader {
                            static_cast<int>(zone) < zones.min_index ||
                            static_cast<int>(zone) > zones.max_index;
         if (ghost) continue;
+        const bool solid = type == 0 || type >= DB_ZONETYPE_POLYHEDRON;
+        if (!file_.flat && !solid) {
+          ++left_out_;
+          continue;
+        }
         for (const auto& face : faces) {
           for (const std::size_t node : face) used[node] = 1;
         }
-        real.push_back(std::move(faces));
-        taken.zones.push_back(zone);
+        real.push_back({std::move(faces), zone});
       }
     }
     const std::vector<Index> numbers = add_points(points, used, taken);
-    for (const auto& faces : real) {
+    for (const auto& [faces, place] : real) {
       if (faces.size() == 1) {
-        add_zone(faces.front(), numbers);
-        continue;
+        append_zone(faces.front(), numbers);
+      } else {
+        std::vector<Index> face;
+        for (const auto& nodes : faces) {
+          face.clear();
+          for (const std::size_t node : nodes) face.push_back(numbers[node]);
+          append_face(face, file_);
+        }
       }
-      std::vector<Index> face;
-      for (const auto& nodes : faces) {
-        face.clear();
-        for (const std::size_t node : nodes) face.push_back(numbers[node]);
-        append_face(face, file_);
-      }
-      end_cell(file_);
+      if (end_cell(file_)) taken.zones.push_back(place);
     }
     return taken;
   }
 
-  void add_zone(const std::vector<std::size_t>& nodes, const std::vector<Index>& numbers) {
-    using Faces = std::vector<std::vector<std::size_t>>;
-    static const Faces kTetrahedron{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}},
-        kPyramid{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}},
-        kPrism{{0, 1, 2, 3}, {1, 2, 5}, {3, 0, 4}, {0, 1, 5, 4}, {2, 3, 4, 5}},
-        kHexahedron{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
+  /// Appends the faces of a zone of a common shape.
+  void append_zone(const std::vector<std::size_t>& nodes, const std::vector<Index>& numbers) {
+    // Silo's wedge has a side of four nodes first, and then the edge opposite to it.
+    static const CellFaces kSiloWedgeFaces{{0, 1, 2, 3}, {1, 2, 5}, {3, 0, 4}, {0, 1, 5, 4}, {2, 3, 4, 5}};
     std::vector<Index> face;
     if (file_.flat) {
       for (const std::size_t n : nodes) face.push_back(numbers[n]);
-      append_face(face, file_);
-      return end_cell(file_);
+      return append_face(face, file_);
     }
-    const std::map<std::size_t, const Faces*> by_size{
-        {4, &kTetrahedron}, {5, &kPyramid}, {6, &kPrism}, {8, &kHexahedron}};
-    const auto found = by_size.find(nodes.size());
-    if (found == by_size.end())
-      fail("{}: expected zones of 4, 5, 6 or 8 nodes, found {}", name_, nodes.size());
-    for (const auto& places : *found->second) {
+    const CellFaces* faces = nodes.size() == 4   ? &kTetrahedronFaces
+                             : nodes.size() == 5 ? &kPyramidFaces
+                             : nodes.size() == 6 ? &kSiloWedgeFaces
+                             : nodes.size() == 8 ? &kHexahedronFaces
+                                                 : nullptr;
+    if (faces == nullptr) fail("{}: expected zones of 4, 5, 6 or 8 nodes, found {}", name_, nodes.size());
+    for (const auto& places : *faces) {
       face.clear();
       for (const std::size_t place : places) face.push_back(numbers[nodes[place]]);
       append_face(face, file_);
     }
-    end_cell(file_);
   }
 
-  Taken add_polyhedra(const DBphzonelist& zones, int origin, const std::vector<Vec3>& points, Taken taken) {
+  Taken add_polyhedra(const DBphzonelist& zones, const std::vector<Vec3>& points, Taken taken) {
     set_dimensions(3);
     taken.zone_count = static_cast<std::size_t>(std::max(zones.nzones, 0));
     std::vector<std::vector<std::size_t>> faces;
@@ -467,14 +512,15 @@ class SiloReader {
       for (int n = 0; n < zones.nodecnt[f]; ++n, ++at) {
         if (at >= static_cast<std::size_t>(std::max(zones.lnodelist, 0)))
           fail("{}: expected more than {} nodes of faces", name_, zones.lnodelist);
-        nodes.push_back(checked_node(zones.nodelist[at], origin, points.size()));
+        nodes.push_back(checked_node(zones.nodelist[at], zones.origin, points.size()));
       }
     }
     const std::vector<Index> numbers = add_points(points, std::vector<char>(points.size(), 1), taken);
     at = 0;
     std::vector<Index> face;
     for (int z = 0; z < zones.nzones; ++z) {
-      const bool real = z >= zones.lo_offset && z <= zones.hi_offset;
+      const bool real = z >= zones.lo_offset && z <= zones.hi_offset &&
+                        (zones.ghost_zone_labels == nullptr || zones.ghost_zone_labels[z] == 0);
       for (int n = 0; n < zones.facecnt[z]; ++n, ++at) {
         if (at >= static_cast<std::size_t>(std::max(zones.lfacelist, 0)))
           fail("{}: expected more than {} faces of zones", name_, zones.lfacelist);
@@ -487,9 +533,7 @@ class SiloReader {
         for (const std::size_t node : faces[static_cast<std::size_t>(f)]) face.push_back(numbers[node]);
         append_face(face, file_);
       }
-      if (!real) continue;
-      end_cell(file_);
-      taken.zones.push_back(static_cast<std::size_t>(z));
+      if (real && end_cell(file_)) taken.zones.push_back(static_cast<std::size_t>(z));
     }
     return taken;
   }
@@ -548,8 +592,11 @@ class SiloReader {
 
   /// Calls visit(material number, fraction, place among mixed values or -1) for the materials of a zone.
   template <class Visit>
-  void for_each_material(const DBmaterial& material, std::size_t zone, Visit&& visit) const {
-    const int first = material.matlist[zone];
+  void for_each_material(const DBmaterial& material, std::size_t zone, const Taken& taken,
+                         Visit&& visit) const {
+    const bool ordered = material.ndims > 1;
+    const int first =
+        material.matlist[ordered ? reordered(zone, taken.zone_counts(), material.major_order) : zone];
     if (first >= 0) return visit(first, 1.0, -1);
     // Mixed zones begin a list of places, from 1, the last of which is followed by 0.
     int place = -first, count = 0;
@@ -577,7 +624,7 @@ class SiloReader {
     for (int m = 0; m < material.nmat; ++m)
       fractions_[material_name(material, choice, material.matnos[m])].resize(file_.cell_ends.size(), 0);
     for (std::size_t n = 0; n < taken.zones.size(); ++n) {
-      for_each_material(material, taken.zones[n], [&](int number, double fraction, int) {
+      for_each_material(material, taken.zones[n], taken, [&](int number, double fraction, int) {
         std::vector<double>& own = fractions_[material_name(material, choice, number)];
         own.resize(file_.cell_ends.size(), 0);
         own[first_cell + n] += fraction;
@@ -590,8 +637,10 @@ class SiloReader {
     std::vector<void*> values, mixed;
     int type = DB_DOUBLE, mixed_length = 0;
     std::size_t count = 0;
-    bool on_zones = true;
+    int centering = DB_ZONECENT;
+    int major_order = DB_ROWMAJOR;
     std::string unit;
+    [[nodiscard]] bool on_zones() const { return centering == DB_ZONECENT; }
   };
 
   Values read_values(DBfile* file, const std::string& name, QuadVariable& quad, UcdVariable& ucd) const {
@@ -605,13 +654,15 @@ class SiloReader {
       result.mixed_length = found->mixlen;
       result.count = static_cast<std::size_t>(std::max(found->nels, 0));
       result.unit = text(found->units);
-      result.on_zones = found->centering == DB_ZONECENT;
+      result.centering = found->centering;
     };
     if (DBInqVarType(file, name.c_str()) == DB_QUADVAR) {
       quad.reset(DBGetQuadvar(file, name.c_str()));
       take(quad);
+      result.major_order = quad->major_order;
+      // Old files state the place in a zone instead: its lowest node or its middle.
       if (quad->centering != DB_ZONECENT && quad->centering != DB_NODECENT)
-        result.on_zones = quad->align[0] != 0;
+        result.centering = quad->align[0] != 0 ? DB_ZONECENT : DB_NODECENT;
     } else {
       ucd.reset(DBGetUcdvar(file, name.c_str()));
       take(ucd);
@@ -625,35 +676,47 @@ class SiloReader {
     QuadVariable quad;
     UcdVariable ucd;
     const Values values = read_values(file, name, quad, ucd);
-    const Centering centering = values.on_zones ? Centering::kCells : Centering::kPoints;
+    const bool on_zones = values.on_zones();
+    const Centering centering = on_zones ? Centering::kCells : Centering::kPoints;
     const auto components = static_cast<int>(values.values.size());
     if (variable.values.empty()) {
       variable.unit = values.unit;
       variable.centering = centering;
       variable.components = components;
     }
-    const std::size_t expected = values.on_zones ? taken.zone_count : taken.node_count;
-    if (centering != variable.centering || components != variable.components || values.count != expected) {
+    const std::size_t expected = on_zones ? taken.zone_count : taken.node_count;
+    if ((!on_zones && values.centering != DB_NODECENT) || centering != variable.centering ||
+        components != variable.components || values.count != expected) {
       variable.complete = false;
       return;
     }
-    const std::size_t items = values.on_zones ? file_.cell_ends.size() : file_.points.size(),
-                      first = values.on_zones ? first_cell : first_point,
+    const std::size_t items = on_zones ? file_.cell_ends.size() : file_.points.size(),
+                      first = on_zones ? first_cell : first_point,
                       size = static_cast<std::size_t>(components);
     variable.values.resize(items * size, 0);
-    const std::vector<std::size_t>& places = values.on_zones ? taken.zones : taken.nodes;
+    const std::vector<std::size_t>& places = on_zones ? taken.zones : taken.nodes;
+    const auto value = [&](std::size_t c, std::size_t place) {
+      const bool ordered = taken.node_counts[0] > 1;
+      return number_at(
+          values.values[c], values.type,
+          ordered ? reordered(place, on_zones ? taken.zone_counts() : taken.node_counts, values.major_order)
+                  : place);
+    };
     for (std::size_t n = 0; n < places.size(); ++n) {
-      for (std::size_t c = 0; c < size; ++c)
-        variable.values[(first + n) * size + c] = number_at(values.values[c], values.type, places[n]);
+      for (std::size_t c = 0; c < size; ++c) variable.values[(first + n) * size + c] = value(c, places[n]);
     }
-    if (material == nullptr || values.mixed.empty() || values.mixed_length != material->mixlen) return;
+    if (material == nullptr || values.mixed.empty() || !on_zones) return;
+    if (values.mixed_length != material->mixlen) {
+      variable.mixed_apart = true;
+      return;
+    }
     for (std::size_t n = 0; n < places.size(); ++n) {
-      for_each_material(*material, places[n], [&](int number, double, int mixed) {
+      for_each_material(*material, places[n], taken, [&](int number, double, int mixed) {
         std::vector<double>& own = variable.of_materials[material_name(*material, choice, number)];
         own.resize(items * size, std::numeric_limits<double>::quiet_NaN());
         for (std::size_t c = 0; c < size; ++c)
           own[(first + n) * size + c] =
-              mixed < 0 ? number_at(values.values[c], values.type, places[n])
+              mixed < 0 ? value(c, places[n])
                         : number_at(values.mixed[c], values.type, static_cast<std::size_t>(mixed));
       });
     }
@@ -672,7 +735,8 @@ class SiloReader {
   /// Turns what was collected of all blocks into arrays.
   void finish(const Choice& choice) {
     file_.kind = "Silo";
-    file_.remark = choice.remark;
+    if (!choice.remark.empty()) add_remark(choice.remark);
+    if (left_out_ > 0) add_remark(fmt::format("{} zones of surfaces and lines are not read", left_out_));
     const std::size_t cells = file_.cell_ends.size();
     for (auto& [name, own] : fractions_) {
       own.resize(cells, 0);
@@ -684,15 +748,19 @@ class SiloReader {
       const std::size_t items = (variable.centering == Centering::kCells ? cells : file_.points.size()) *
                                 static_cast<std::size_t>(variable.components);
       if (!variable.complete || variable.values.size() > items) {
-        file_.remark += fmt::format("{}variable '{}', which some blocks have not, is not read",
-                                    file_.remark.empty() ? "" : "; ", name);
+        add_remark(fmt::format("variable '{}' is not read: not all blocks have it on zones or nodes", name));
         continue;
       }
+      if (variable.mixed_apart)
+        add_remark(fmt::format("the values of '{}' for mixed zones do not fit the materials and are not read",
+                               name));
       variable.values.resize(items, 0);
       if (variable.of_materials.empty()) {
         add_array(name + unit, variable.centering, variable.components, std::move(variable.values));
         continue;
       }
+      // A block without mixed zones has one value for whatever is in them.
+      for (const auto& [material, own] : fractions_) variable.of_materials[material];
       for (auto& [material, own] : variable.of_materials) {
         own.resize(items, std::numeric_limits<double>::quiet_NaN());
         for (std::size_t i = 0; i < items; ++i) own[i] = std::isnan(own[i]) ? variable.values[i] : own[i];
@@ -701,10 +769,14 @@ class SiloReader {
     }
   }
 
+  void add_remark(const std::string& text) { file_.remark += (file_.remark.empty() ? "" : "; ") + text; }
+
+  static constexpr std::size_t kMostNodes = std::numeric_limits<Index>::max() - 1;
+
   const std::filesystem::path& path_;
   std::string name_;
   std::map<std::filesystem::path, File> files_;
-  bool x_fastest_ = true;
+  std::size_t left_out_ = 0;
   std::optional<PointMerger> merger_;
   std::map<std::string, std::vector<double>> fractions_;  // by material
   std::map<std::string, Variable> variables_;

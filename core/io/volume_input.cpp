@@ -154,6 +154,8 @@ std::string volume_endings() { return list_volume_endings("or"); }
 
 std::string grid_endings() { return list_grid_endings(","); }
 
+std::string mesh_endings() { return io::list_mesh_endings("and"); }
+
 Volume read_volume(const VolumeInput& input, Progress& progress) {
   OutputSet none;
   return read_whole(open_volume_input(input, none, progress), input.path, progress);

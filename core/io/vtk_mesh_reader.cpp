@@ -49,60 +49,53 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// The faces of a cell, by the places of its points.
-using FaceTable = std::vector<std::vector<int>>;
-
 /// A kind of cells: how many corners come first among its points, and its faces; cells of higher degree are
 /// taken by their corners.
 struct CellShape {
-  int corners;
-  const FaceTable* faces;
+  std::size_t corners;
+  const CellFaces* faces;
   bool higher_degree = false;
 };
 
-const FaceTable kTetrahedron{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}};
-const FaceTable kVoxel{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-const FaceTable kHexahedron{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
-                            {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
-const FaceTable kWedge{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
-const FaceTable kPyramid{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
-const FaceTable kPentagonalPrism{{0, 4, 3, 2, 1}, {5, 6, 7, 8, 9}, {0, 1, 6, 5}, {1, 2, 7, 6},
-                                 {2, 3, 8, 7},    {3, 4, 9, 8},    {4, 0, 5, 9}};
-const FaceTable kHexagonalPrism{{0, 5, 4, 3, 2, 1}, {6, 7, 8, 9, 10, 11}, {0, 1, 7, 6},   {1, 2, 8, 7},
-                                {2, 3, 9, 8},       {3, 4, 10, 9},        {4, 5, 11, 10}, {5, 0, 6, 11}};
+const CellFaces kVoxelFaces{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                            {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+const CellFaces kPentagonalPrismFaces{{0, 4, 3, 2, 1}, {5, 6, 7, 8, 9}, {0, 1, 6, 5}, {1, 2, 7, 6},
+                                      {2, 3, 8, 7},    {3, 4, 9, 8},    {4, 0, 5, 9}};
+const CellFaces kHexagonalPrismFaces{{0, 5, 4, 3, 2, 1}, {6, 7, 8, 9, 10, 11}, {0, 1, 7, 6},   {1, 2, 8, 7},
+                                     {2, 3, 9, 8},       {3, 4, 10, 9},        {4, 5, 11, 10}, {5, 0, 6, 11}};
 
 CellShape shape_of(int type) {
   switch (type) {
     case VTK_TETRA:
-      return {4, &kTetrahedron};
+      return {4, &kTetrahedronFaces};
     case VTK_VOXEL:
-      return {8, &kVoxel};
+      return {8, &kVoxelFaces};
     case VTK_HEXAHEDRON:
-      return {8, &kHexahedron};
+      return {8, &kHexahedronFaces};
     case VTK_WEDGE:
-      return {6, &kWedge};
+      return {6, &kWedgeFaces};
     case VTK_PYRAMID:
-      return {5, &kPyramid};
+      return {5, &kPyramidFaces};
     case VTK_PENTAGONAL_PRISM:
-      return {10, &kPentagonalPrism};
+      return {10, &kPentagonalPrismFaces};
     case VTK_HEXAGONAL_PRISM:
-      return {12, &kHexagonalPrism};
+      return {12, &kHexagonalPrismFaces};
     case VTK_QUADRATIC_TETRA:
     case VTK_LAGRANGE_TETRAHEDRON:
-      return {4, &kTetrahedron, true};
+      return {4, &kTetrahedronFaces, true};
     case VTK_QUADRATIC_HEXAHEDRON:
     case VTK_TRIQUADRATIC_HEXAHEDRON:
     case VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON:
     case VTK_LAGRANGE_HEXAHEDRON:
-      return {8, &kHexahedron, true};
+      return {8, &kHexahedronFaces, true};
     case VTK_QUADRATIC_WEDGE:
     case VTK_QUADRATIC_LINEAR_WEDGE:
     case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
     case VTK_LAGRANGE_WEDGE:
-      return {6, &kWedge, true};
+      return {6, &kWedgeFaces, true};
     case VTK_QUADRATIC_PYRAMID:
     case VTK_TRIQUADRATIC_PYRAMID:
-      return {5, &kPyramid, true};
+      return {5, &kPyramidFaces, true};
     default:
       return {0, nullptr};
   }
@@ -207,10 +200,14 @@ class CellCollector {
       Piece& piece = pieces_[n];
       const vtkUnsignedCharArray* ghosts = piece.set->GetCellGhostArray();
       for (vtkIdType c = 0; c < piece.set->GetNumberOfCells(); ++c) {
-        constexpr unsigned kLeftOut = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL |
-                                      vtkDataSetAttributes::REFINEDCELL;
-        if (ghosts != nullptr && (const_cast<vtkUnsignedCharArray*>(ghosts)->GetValue(c) & kLeftOut) != 0)
+        const unsigned ghost = ghosts != nullptr && c < ghosts->GetNumberOfTuples()
+                                   ? const_cast<vtkUnsignedCharArray*>(ghosts)->GetValue(c)
+                                   : 0;
+        if ((ghost & vtkDataSetAttributes::DUPLICATECELL) != 0) continue;
+        if ((ghost & (vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL)) != 0) {
+          ++hidden_;
           continue;
+        }
         const int type = piece.set->GetCellType(c);
         if (type == VTK_POLYHEDRON || shape_of(type).faces != nullptr) {
           piece.cells.push_back(c);
@@ -236,6 +233,14 @@ class CellCollector {
     }
     std::erase_if(pieces_, [](const Piece& piece) { return piece.cells.empty(); });
     if (pieces_.empty()) fail("{}: expected cells with a volume, found none", name_);
+    for (const Piece& piece : pieces_) {
+      std::array<double, 6> bounds{};
+      piece.set->GetBounds(bounds.data());
+      const double size = std::max(bounds[1] - bounds[0], bounds[3] - bounds[2]);
+      if (file_.flat && !(bounds[5] - bounds[4] <= kFlat * size))
+        fail("{}: expected cells with a volume, or cells in the plane of x and y, found those of a surface",
+             name_);
+    }
   }
 
   void number_points() {
@@ -250,9 +255,7 @@ class CellCollector {
     }
     if (count >= std::numeric_limits<Index>::max())
       fail("{}: expected fewer than {} points, found {}", name_, std::numeric_limits<Index>::max(), count);
-    // The points of one unstructured grid are apart on purpose.
-    const bool merges = pieces_.size() > 1 || vtkUnstructuredGrid::SafeDownCast(pieces_[0].set) == nullptr;
-    PointMerger merger(PointMerger::kCoincident * box.diagonal(), file_.points);
+    PointMerger merger(PointMerger::kCoincident * std::max(box.diagonal(), 1e-300), file_.points);
     for (Piece& piece : pieces_) {
       std::vector<Index>& numbers = numbers_.emplace_back();
       for (vtkIdType p = 0; p < piece.set->GetNumberOfPoints(); ++p) {
@@ -260,13 +263,17 @@ class CellCollector {
         piece.set->GetPoint(p, x.data());
         const Vec3 at{x[0], x[1], x[2]};
         const auto next = static_cast<Index>(file_.points.size());
-        if (merges && is_finite(at)) {
+        if (is_finite(at)) {
           numbers.push_back(merger.number(at));
         } else {
           numbers.push_back(next);
           file_.points.push_back(at);
         }
-        if (numbers.back() == next) piece.points.push_back(p);
+        if (numbers.back() == next) {
+          piece.points.push_back(p);
+        } else {
+          ++merged_;
+        }
       }
     }
   }
@@ -284,10 +291,11 @@ class CellCollector {
 
   void add_cells() {
     const auto ids = vtkSmartPointer<vtkIdList>::New();
-    std::vector<vtkIdType> face;
+    std::vector<vtkIdType> face, kept;
     for (std::size_t n = 0; n < pieces_.size(); ++n) {
       vtkDataSet& set = *pieces_[n].set;
       auto* unstructured = vtkUnstructuredGrid::SafeDownCast(&set);
+      kept.clear();
       for (const vtkIdType c : pieces_[n].cells) {
         const int type = set.GetCellType(c);
         if (file_.flat) {
@@ -316,19 +324,24 @@ class CellCollector {
         } else {
           const CellShape shape = shape_of(type);
           set.GetCellPoints(c, ids);
-          if (ids->GetNumberOfIds() < shape.corners)
+          if (ids->GetNumberOfIds() < static_cast<vtkIdType>(shape.corners))
             fail("{}: expected a cell of {} points, found {} of cell {}", name_, shape.corners,
                  ids->GetNumberOfIds(), c);
           higher_degree_ = higher_degree_ || shape.higher_degree;
-          for (const std::vector<int>& places : *shape.faces) {
+          for (const auto& places : *shape.faces) {
             face.clear();
-            for (const int place : places) face.push_back(ids->GetId(place));
+            for (const std::size_t place : places) face.push_back(ids->GetId(static_cast<vtkIdType>(place)));
             add_face(numbers_[n], face);
           }
         }
-        end_cell(file_);
+        if (end_cell(file_)) kept.push_back(c);
       }
+      collapsed_ += pieces_[n].cells.size() - kept.size();
+      pieces_[n].cells = kept;
     }
+    std::erase_if(pieces_, [](const Piece& piece) { return piece.cells.empty() && piece.points.empty(); });
+    if (collapsed_ > 0) add_remark(fmt::format("{} cells that have collapsed are left out", collapsed_));
+    if (hidden_ > 0) add_remark(fmt::format("{} cells that are hidden or refined are left out", hidden_));
     if (higher_degree_) add_remark("cells of higher degree are taken by their corners");
     if (flat_ > 0) add_remark(fmt::format("{} cells of surfaces and lines are not read", flat_));
   }
@@ -342,17 +355,25 @@ class CellCollector {
 
   void add_arrays() {
     for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
-      std::vector<std::string> left_out;
-      const vtkDataSetAttributes& first = attributes(*pieces_[0].set, centering);
-      for (int i = 0; i < const_cast<vtkDataSetAttributes&>(first).GetNumberOfArrays(); ++i) {
-        vtkDataArray* array = const_cast<vtkDataSetAttributes&>(first).GetArray(i);
-        const char* name = array != nullptr ? array->GetName() : nullptr;
-        if (name == nullptr || name == std::string_view("vtkGhostType")) continue;
-        if (!add_array(*array, centering)) left_out.push_back(name);
+      std::vector<std::string> names;
+      for (const Piece& piece : pieces_) {
+        vtkDataSetAttributes& own = attributes(*piece.set, centering);
+        for (int i = 0; i < own.GetNumberOfArrays(); ++i) {
+          const char* name = own.GetAbstractArray(i)->GetName();
+          if (name == nullptr || name == std::string_view("vtkGhostType")) continue;
+          if (std::ranges::find(names, name) == names.end()) names.emplace_back(name);
+        }
       }
-      for (const std::string& name : left_out)
-        add_remark(fmt::format("array '{}', which some blocks have not, is not read", name));
+      for (const std::string& name : names) {
+        if (!add_array(name, centering))
+          add_remark(
+              fmt::format("array '{}' is not read: not all blocks have it as numbers of one type", name));
+      }
     }
+    const bool on_points = std::ranges::any_of(
+        file_.arrays, [](const GridArray& array) { return array.centering == Centering::kPoints; });
+    if (merged_ > 0 && on_points)
+      add_remark(fmt::format("{} points at the places of others are left out with their values", merged_));
     auto* names =
         vtkStringArray::SafeDownCast(pieces_[0].set->GetFieldData()->GetAbstractArray("material_names"));
     for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i)
@@ -360,18 +381,27 @@ class CellCollector {
   }
 
   /// Adds an array if all pieces have it.
-  bool add_array(vtkDataArray& like, Centering centering) {
-    const auto joined = vtk::TakeSmartPointer(like.NewInstance());
-    joined->SetName(like.GetName());
-    joined->SetNumberOfComponents(like.GetNumberOfComponents());
-    for (int c = 0; like.HasAComponentName() && c < like.GetNumberOfComponents(); ++c) {
-      if (like.GetComponentName(c) != nullptr) joined->SetComponentName(c, like.GetComponentName(c));
-    }
+  bool add_array(const std::string& name, Centering centering) {
+    vtkSmartPointer<vtkDataArray> joined;
     for (const Piece& piece : pieces_) {
-      vtkDataArray* own = attributes(*piece.set, centering).GetArray(like.GetName());
-      if (own == nullptr || own->GetDataType() != like.GetDataType() ||
-          own->GetNumberOfComponents() != like.GetNumberOfComponents())
+      vtkDataArray* own = attributes(*piece.set, centering).GetArray(name.c_str());
+      if (own == nullptr) return false;
+      if (joined == nullptr) {
+        joined = vtk::TakeSmartPointer(own->NewInstance());
+        joined->SetName(name.c_str());
+        joined->SetNumberOfComponents(own->GetNumberOfComponents());
+        for (int c = 0; own->HasAComponentName() && c < own->GetNumberOfComponents(); ++c) {
+          if (own->GetComponentName(c) != nullptr) joined->SetComponentName(c, own->GetComponentName(c));
+        }
+      }
+      if (own->GetDataType() != joined->GetDataType() ||
+          own->GetNumberOfComponents() != joined->GetNumberOfComponents())
         return false;
+      const vtkIdType items =
+          centering == Centering::kCells ? piece.set->GetNumberOfCells() : piece.set->GetNumberOfPoints();
+      if (own->GetNumberOfTuples() != items)
+        fail("{}: array '{}': expected values of {} {}, found {}", name_, name, items,
+             centering == Centering::kCells ? "cells" : "points", own->GetNumberOfTuples());
       for (const vtkIdType i : centering == Centering::kCells ? piece.cells : piece.points)
         joined->InsertNextTuple(i, own);
     }
@@ -379,40 +409,38 @@ class CellCollector {
     return true;
   }
 
-  /// Adds the blocks, by the order in which their names come first, as labels of cells.
+  /// Sets the blocks, in the order in which their names come first, and that of each cell.
   void add_blocks() {
-    std::vector<std::int32_t> block_of_cell;
     for (const Piece& piece : pieces_) {
       const auto found = std::ranges::find(file_.blocks, piece.block);
       const auto number = static_cast<std::int32_t>(found - file_.blocks.begin());
       if (found == file_.blocks.end()) file_.blocks.push_back(piece.block);
-      block_of_cell.insert(block_of_cell.end(), piece.cells.size(), number);
+      file_.block_of_cell.insert(file_.block_of_cell.end(), piece.cells.size(), number);
     }
-    if (file_.blocks.size() < 2) {
-      file_.blocks.clear();
-      return;
-    }
-    GridArray array;
-    array.name = MeshFile::kBlocks;
-    array.type = "int32";
-    array.centering = Centering::kCells;
-    array.values = std::move(block_of_cell);
-    file_.arrays.push_back(std::move(array));
+    if (file_.blocks.size() > 1) return;
+    file_.blocks.clear();
+    file_.block_of_cell.clear();
   }
+
+  /// Cells lie in a plane if they leave it by at most this part of their extent.
+  static constexpr double kFlat = 1e-9;
 
   std::string name_;
   std::vector<Piece> pieces_;
   std::vector<std::vector<Index>> numbers_;  // of the points of each piece
-  std::size_t flat_ = 0;
+  std::size_t flat_ = 0, hidden_ = 0, collapsed_ = 0, merged_ = 0;
   bool higher_degree_ = false;
   MeshFile file_;
 };
 
-MeshFile collected(const std::string& name, const char* kind, vtkDataObject* data) {
+/// Collects the cells of what a reader found; `remark`: what is to be said of it besides.
+MeshFile collected(const std::string& name, const char* kind, vtkDataObject* data,
+                   const std::string& remark = {}) {
   CellCollector collector(name);
   collector.add(data);
   MeshFile file = collector.run();
   file.kind = kind;
+  if (!remark.empty()) file.remark = remark + (file.remark.empty() ? "" : "; " + file.remark);
   return file;
 }
 
@@ -464,13 +492,14 @@ MeshFile read_openfoam(const std::string& name, const VtkMessages& messages) {
   reader->CreateCellToPointOff();
   reader->SkipZeroTimeOff();
   reader->UpdateInformation();
-  reader->DisableAllPatchArrays();
-  reader->SetPatchArrayStatus("internalMesh", 1);
+  // Of a case with regions, the mesh of each is "REGION/internalMesh".
+  for (int i = 0; i < reader->GetNumberOfPatchArrays(); ++i) {
+    const std::string patch = reader->GetPatchArrayName(i);
+    reader->SetPatchArrayStatus(patch.c_str(), patch.ends_with("internalMesh") ? 1 : 0);
+  }
   const std::string remark = update_to_last_time(*reader);
   messages.check(name);
-  MeshFile file = collected(name, "OpenFOAM case", reader->GetOutputDataObject(0));
-  file.remark = remark;
-  return file;
+  return collected(name, "OpenFOAM case", reader->GetOutputDataObject(0), remark);
 }
 
 MeshFile read_exodus(const std::string& name, const VtkMessages& messages) {
@@ -485,11 +514,8 @@ MeshFile read_exodus(const std::string& name, const VtkMessages& messages) {
   if (steps > 0) reader->SetTimeStep(steps - 1);
   reader->Update();
   messages.check(name);
-  MeshFile file = collected(name, "ExodusII", reader->GetOutputDataObject(0));
-  if (steps > 1) {
-    file.remark += fmt::format("{}of {} times the last one is read", file.remark.empty() ? "" : "; ", steps);
-  }
-  return file;
+  const std::string remark = steps > 1 ? fmt::format("of {} times the last one is read", steps) : "";
+  return collected(name, "ExodusII", reader->GetOutputDataObject(0), remark);
 }
 
 MeshFile read_vtkhdf(const std::string& name, const VtkMessages& messages) {
@@ -511,9 +537,7 @@ MeshFile read_cgns(const std::string& name, const VtkMessages& messages) {
   reader->EnableAllPointArrays();
   const std::string remark = update_to_last_time(*reader);
   messages.check(name);
-  MeshFile file = collected(name, "CGNS", reader->GetOutputDataObject(0));
-  file.remark += (file.remark.empty() || remark.empty() ? "" : "; ") + remark;
-  return file;
+  return collected(name, "CGNS", reader->GetOutputDataObject(0), remark);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ struct FileSummary {
   std::array<std::size_t, 3> nodes{};  ///< numbers along the axes of a grid; else zeros
   /// Numbers of points and of cells, which are those of a grid, tetrahedra, polygons, lines or triangles.
   std::size_t points = 0, cells = 0;
-  Box3 box;  ///< the box of all points
+  std::size_t blocks = 0;  ///< the number of blocks of a mesh, if it has several; else 0
+  Box3 box;                ///< the box of all points
   /// Unit vectors of a grid's axes; they are x, y and z unless the grid could not be laid out along these,
   /// and `origin` is the place of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

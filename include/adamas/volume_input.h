@@ -42,6 +42,8 @@ struct VolumeInput {
 std::string volume_endings();
 /// Returns the endings of the files that data on a grid are read from: ".vti,.vtr, ...".
 std::string grid_endings();
+/// The same of files with data on meshes of cells.
+std::string mesh_endings();
 
 /// Reads a volume into memory, as read_volume() of `adamas/files.h` does. Throws Error (kUsage) where values
 /// contradict each other, and Error, with the file's name, where a file cannot be used.

@@ -16,7 +16,7 @@ struct InputFacts {
   std::string name;
   Box3 box;
   std::vector<FieldInfo> fields;
-  double voxel = 0;         ///< the least spacing of the input's grid; 0 if there is none
+  double voxel = 0;         ///< as in ResamplingSource
   bool has_labels = false;  ///< whether interfaces are reconstructed from labels
 };
 InputFacts facts_of(const ResamplingSource& source);

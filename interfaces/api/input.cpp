@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include "adamas/text.h"
 #include "core/base/notes.h"
@@ -153,11 +151,7 @@ Input::Contents::Contents(std::unique_ptr<MeshData> taken)
   fields = describe(facts.fields);
   const IdVector<MaterialId, std::string> names = materials_with_outside(*cells);
   materials.assign(names.begin(), names.end());
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t cell = 0; cell < cells->mesh.cell_count(); ++cell) {
-    if (cells->mesh.cell_volume(cell) > 0) least = std::min(least, cells->mesh.cell_volume(cell));
-  }
-  facts.voxel = std::cbrt(least);
+  facts.voxel = cells->mesh.typical_size();
 }
 
 Input::Contents::Contents(InterfaceMesh given, const Box3& domain, const MendingOptions& how,

@@ -99,18 +99,22 @@ ReconstructedInterfaces reconstruct_cells(const MeshData& data, const Reconstruc
   refuse_reconstruction({.smooth_labels = options.smooth_labels, .fractions = options.fractions},
                         "data on a mesh");
   MeshReconstruction found = reconstruct_mesh(data, progress);
-  const CellAgreement agreement = found.agreement.cells;
+  const MeshAgreement agreement = found.agreement;
   const ResamplingSource source = make_cells_source(data, std::move(found), progress);
   ReconstructedInterfaces result = take_given(source, options, progress);
-  const NetworkMeasures measures = measure_network(*source.network, source.box, source.materials.size());
+  // Without interfaces one material fills the box.
+  IdVector<MaterialId, double> found_volumes = source.volumes;
+  if (!source.network->triangles().empty())
+    found_volumes = measure_network(*source.network, source.box, source.materials.size()).volumes;
   for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
     result.materials[m.value].volume_input = source.volumes[m];
-    result.materials[m.value].volume_reconstructed = measures.volumes[m];
-    if (source.volumes[m] > 0 && !(measures.volumes[m] > 0))
+    result.materials[m.value].volume_reconstructed = found_volumes[m];
+    if (source.volumes[m] > 0 && !(found_volumes[m] > 0))
       result.lost_materials.push_back({m.value, source.volumes[m], false});
   }
   result.fractions = source.findings;
-  result.agreement = agreement;
+  result.agreement = agreement.cells;
+  result.lost_places = agreement.lost;
   return result;
 }
 

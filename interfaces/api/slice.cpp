@@ -68,6 +68,9 @@ Slice slice(const Input& input, const Plane& plane, const SliceFieldOptions& opt
   const Input::Contents& contents = input.contents();
   if (contents.data && (!contents.mesh || !options.field.empty()))
     return slice_data(*contents.data, plane, options);
+  if (contents.cells && !options.field.empty())
+    fail("{}: a field in a slice: expected data on a grid or a resampled mesh, found a mesh of cells",
+         input.name());
   static_cast<void>(chosen({}, options, input.name()));
   const ResamplingSource source = contents.source({}, progress);
   return to_slice(cross_section(*source.network, source.box, source.materials.size(), plane, source.name),

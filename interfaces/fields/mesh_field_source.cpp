@@ -18,8 +18,8 @@ namespace {
 
 /// A cell states a value of a field per material if the material's fraction is at least this.
 constexpr float kPresent = 1e-3f;
-/// A cell states a value of a mixed field if the material's fraction is at least this, or if no cell round it
-/// has a greater one.
+/// A cell states a value of a mixed field if its owner's fraction is at least this, or if no cell round it
+/// with the same owner has so much.
 constexpr float kPure = 0.99f;
 /// A fit takes the sites within so many rings of cells as hold this many and extend along every axis, but at
 /// most kReach if there are any.
@@ -72,6 +72,7 @@ MeshFieldSource::MeshFieldSource(const MeshData& data,
     row_size_ += static_cast<std::size_t>(field.components);
   }
   find_owners(material_at);
+  find_stated_fields();
   find_ranges();
 }
 
@@ -120,7 +121,7 @@ void MeshFieldSource::find_owners(const std::function<MaterialId(const Vec3&)>& 
     const std::span<const Index> round = mesh.cells_round(p);
     if (round.empty()) continue;
     const std::uint16_t owner = owner_[cells + p];
-    // A point at the boundary of a mesh is inside it.
+    // A point at the boundary that is found outside stands for no material.
     if (owner >= data_.materials.size()) continue;
     const bool pure = std::ranges::all_of(round, [&](Index c) { return fraction(c, owner) >= kPure; });
     elements_.push_back(
@@ -134,6 +135,21 @@ void MeshFieldSource::find_owners(const std::function<MaterialId(const Vec3&)>& 
       if (any) elements_.push_back({mesh.cell_center(c), m, ElementKind::kMinority, c});
     }
   }
+}
+
+/// Finds the materials of which a field has any value: stated, or at cells with a part of them.
+void MeshFieldSource::find_stated_fields() {
+  stated_somewhere_.assign(fields_.size(), std::vector<char>(data_.materials.size(), 0));
+  parallel_for(fields_.size(), 1, [&](std::size_t f) {
+    for (MaterialId m(0); m.value < data_.materials.size(); ++m.value) {
+      const bool any_part = !data_.fields[f].per_material() && data_.labels.empty();
+      for (std::size_t site = 0; site < owner_.size() && stated_somewhere_[f][m.value] == 0; ++site) {
+        const bool part =
+            any_part && is_cell(site) && belongs(f, site) && data_.fractions[m][site] >= kPresent;
+        stated_somewhere_[f][m.value] = part || states(f, m, site) ? 1 : 0;
+      }
+    }
+  });
 }
 
 bool MeshFieldSource::states(std::size_t field, MaterialId material, std::size_t site) const {
@@ -209,7 +225,7 @@ bool MeshFieldSource::add_sites(std::size_t field, MaterialId material, std::spa
 /// Collects the values stated within `least` rings of cells round one, or within as many more as a fit needs.
 void MeshFieldSource::collect(std::size_t field, MaterialId material, Index cell, int least,
                               Sample& sample) const {
-  if (material.value >= data_.materials.size()) return;
+  if (material.value >= data_.materials.size() || !stated_somewhere_[field][material.value]) return;
   const bool mixed = !data_.fields[field].per_material() && data_.labels.empty();
   for (const bool any_part : {false, true}) {
     if (any_part && !mixed) return;
@@ -232,7 +248,7 @@ void MeshFieldSource::collect(std::size_t field, MaterialId material, Index cell
   }
 }
 
-void MeshFieldSource::point_values(std::size_t field, MaterialId material, Index point, Index cell,
+void MeshFieldSource::point_values(std::size_t field, MaterialId material, Index point,
                                    std::span<double> out) const {
   const PolyhedralMesh& mesh = data_.mesh;
   const auto components = static_cast<std::size_t>(fields_[field].components);
@@ -246,7 +262,7 @@ void MeshFieldSource::point_values(std::size_t field, MaterialId material, Index
     const std::span<const Index> round =
         point >= first_center ? mesh.points_of_cell(point - first_center) : mesh.face(point - points);
     for (const Index p : round) {
-      point_values(field, material, p, cell, one);
+      point_values(field, material, p, one);
       for (std::size_t c = 0; c < components; ++c) out[c] += one[c] / static_cast<double>(round.size());
     }
     return;
@@ -323,7 +339,7 @@ void MeshFieldSource::values_and_gradients(MaterialId material, const Vec3& p, s
       if (!gradients.empty()) gradients[fields_[f].offset + c] = {};
     }
     for (std::size_t i = 0; i < 4; ++i) {
-      point_values(f, material, at.corners[i], at.cell, one);
+      point_values(f, material, at.corners[i], one);
       for (std::size_t c = 0; c < components; ++c) {
         row[fields_[f].offset + c] += at.weights[i] * one[c];
         if (!gradients.empty()) gradients[fields_[f].offset + c] += one[c] * slopes[i];

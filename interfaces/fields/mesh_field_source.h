@@ -58,10 +58,10 @@ class MeshFieldSource final : public FieldSource {
   [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
   [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, std::size_t c) const;
   void find_owners(const std::function<MaterialId(const Vec3&)>& material_at);
+  void find_stated_fields();
   void find_ranges();
   [[nodiscard]] Location locate(const Vec3& p) const;
-  void point_values(std::size_t field, MaterialId material, Index point, Index cell,
-                    std::span<double> out) const;
+  void point_values(std::size_t field, MaterialId material, Index point, std::span<double> out) const;
   void collect(std::size_t field, MaterialId material, Index cell, int least, Sample& sample) const;
   [[nodiscard]] bool add_sites(std::size_t field, MaterialId material, std::span<const Index> cells,
                                const std::vector<char>& known, bool any_part, Sample& sample) const;
@@ -74,6 +74,7 @@ class MeshFieldSource final : public FieldSource {
   std::vector<std::uint16_t> owner_;        ///< by site
   std::vector<std::uint8_t> mixed_stated_;  ///< by cell: whether its values of mixed fields are its owner's
   std::array<bool, 3> extends_{};           ///< along which axes the cells' centres are at different places
+  std::vector<std::vector<char>> stated_somewhere_;  ///< by field and material: whether it has any value
   std::vector<NativeElement> elements_;
   std::unique_ptr<Cache> cache_;
 };

@@ -1,16 +1,41 @@
 #include "interfaces/input/mesh_source.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "interfaces/fields/mesh_field_source.h"
-#include "interfaces/mesh_reconstruction/mesh_reconstruction.h"
+#include "interfaces/mesh_reconstruction/mesh_interfaces.h"
 #include "interfaces/network/network_measures.h"
 
 namespace adamas::interfaces {
+
+namespace {
+
+/// Adds the volume of what the mesh does not fill of the box round it to that of the outside.
+void add_outside(const MeshData& data, ResamplingSource& source) {
+  double rest = source.box.volume();
+  for (std::size_t c = 0; c < data.mesh.cell_count(); ++c) rest -= data.mesh.cell_volume(c);
+  if (rest < 0)
+    fail("{}: expected cells apart from each other, found them to fill {:.6g} more than the box round them",
+         data.source, -rest);
+  const auto outside = std::ranges::find(source.materials, kOutside) - source.materials.begin();
+  if (source.volumes.size() < source.materials.size()) source.volumes.push_back(0);
+  source.volumes[MaterialId(static_cast<std::size_t>(outside))] += rest;
+}
+
+/// Makes the network of interfaces; if there are none, of the one material that fills the box.
+std::shared_ptr<const InterfaceNetwork> make_network(const InterfaceMesh& mesh,
+                                                     const ResamplingSource& source) {
+  if (!mesh.triangles.empty()) return std::make_shared<InterfaceNetwork>(mesh, source.box);
+  Bodies bodies;
+  const auto most = std::ranges::max_element(source.volumes) - source.volumes.begin();
+  bodies.materials.push_back(MaterialId(static_cast<std::size_t>(most)));
+  return std::make_shared<InterfaceNetwork>(InterfaceMesh(mesh), source.box, bodies);
+}
+
+}  // namespace
 
 ResamplingSource make_cells_source(const MeshData& data, Progress& progress) {
   return make_cells_source(data, reconstruct_mesh(data, progress), progress);
@@ -24,15 +49,10 @@ ResamplingSource make_cells_source(const MeshData& data, MeshReconstruction&& re
   source.box = data.mesh.box();
   source.materials = reconstruction.mesh.materials;
   source.volumes = data.volumes();
-  double inside = 0, least = std::numeric_limits<double>::infinity();
-  for (std::size_t c = 0; c < data.mesh.cell_count(); ++c) {
-    inside += data.mesh.cell_volume(c);
-    if (data.mesh.cell_volume(c) > 0) least = std::min(least, data.mesh.cell_volume(c));
-  }
-  if (source.materials.size() > source.volumes.size()) source.volumes.push_back(source.box.volume() - inside);
-  source.voxel = std::cbrt(least);
+  if (!data.mesh.fills_box()) add_outside(data, source);
+  source.voxel = data.mesh.typical_size();
   if (data.labels.empty()) source.findings = std::move(reconstruction.agreement.findings);
-  const auto network = std::make_shared<InterfaceNetwork>(reconstruction.mesh, source.box);
+  const std::shared_ptr<const InterfaceNetwork> network = make_network(reconstruction.mesh, source);
   source.network = network;
   if (!network->triangles().empty()) {
     NetworkMeasures measures = measure_network(*network, source.box, source.materials.size());

@@ -31,7 +31,8 @@ struct ResamplingSource {
   /// The findings about the fractions from which the interfaces were reconstructed; none if interfaces are
   /// given.
   std::optional<FractionFindings> findings;
-  double voxel = 0;  ///< the least spacing of the input's grid; 0 if there is none
+  double voxel = 0;  ///< the least spacing of the input's grid, or the size of a typical cell of its
+                     ///< mesh; 0 if it has neither
 };
 
 }  // namespace adamas::interfaces

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
@@ -46,62 +47,51 @@ constexpr int kMostClosings = 30;
 constexpr double kSurelyBlurred = 0.7, kFits = 0.0015;
 /// The greatest part of the exchange between neighbours in a step of diffusion.
 constexpr double kDiffusionStep = 0.4;
+/// The greatest number of steps of diffusion.
+constexpr double kMostDiffusions = 64;
+/// Centres of cells are taken to be at least this far apart, in sizes of cells.
+constexpr double kLeastDistance = 1e-6;
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// Smooths parts of cells as a Gaussian does, by diffusion between neighbours. At the boundary parts are
 /// continued linearly.
 class Diffusion {
  public:
-  /// `widths`: the standard deviations by material, in sizes of cells.
-  Diffusion(const MeshValues& values, const std::vector<double>& widths) : values_(values) {
-    const MeshSubdivision& subdivision = values.subdivision();
-    const PolyhedralMesh& mesh = subdivision.mesh();
-    place_.assign(mesh.cell_count(), kNone);
-    for (std::uint32_t n = 0; n < values.active_cells().size(); ++n) place_[values.active_cells()[n]] = n;
-    const double widest = *std::ranges::max_element(widths);
+  /// `widths`: the standard deviations as lengths, by entry of active cells.
+  Diffusion(const MeshValues& values, std::vector<double> widths)
+      : values_(values), widths_(std::move(widths)), place_(values.subdivision().mesh().cell_count(), kNone) {
+    const std::vector<Index>& active = values.active_cells();
     double most = 0;
-    for (const Index c : values.active_cells()) {
-      first_.push_back(sides_.size());
-      if (!(mesh.cell_volume(c) > 0)) continue;
-      double rate = 0;
-      Vec3 open;  // the area of the cell's faces at the boundary
-      for (const Index f : mesh.faces_of_cell(c)) {
-        const Index other = mesh.neighbour(c, f);
-        const Vec3 area = face_area(f);
-        if (other == PolyhedralMesh::kNone) {
-          open += area;
-          continue;
-        }
-        // The flux that passes a face, by the difference of the two cells.
-        const double by =
-            norm(area) / (distance(mesh.cell_center(c), mesh.cell_center(other)) * mesh.cell_volume(c));
-        sides_.push_back({other, by});
-        rate += by;
-      }
-      if (squared_norm(open) > 0) add_boundary(c, (1 / mesh.cell_volume(c)) * open);
-      most = std::max(most, 0.5 * rate * std::pow(widest * values.size(c), 2));
+    firsts_.push_back(0);
+    for (std::uint32_t n = 0; n < active.size(); ++n) {
+      const Index c = active[n];
+      place_[c] = n;
+      firsts_.push_back(firsts_.back() + values.at(c).size());
+      first_sides_.push_back(sides_.size());
+      rates_.push_back(add_sides(c));
+      for (std::size_t e = firsts_[n]; e < firsts_[n + 1]; ++e)
+        most = std::max(most, 0.5 * rates_.back() * widths_[e] * widths_[e]);
     }
-    first_.push_back(sides_.size());
-    steps_ = std::max(1, static_cast<int>(std::ceil(most / kDiffusionStep)));
+    first_sides_.push_back(sides_.size());
+    steps_ = static_cast<int>(std::clamp(std::ceil(most / kDiffusionStep), 1.0, kMostDiffusions));
   }
 
-  /// Smooths parts of active cells; `widths` are by material, in sizes of cells.
-  void run(const std::vector<double>& widths, std::vector<double>& parts) const {
+  /// Smooths parts of active cells.
+  void run(std::vector<double>& parts) const {
     std::vector<double> next(parts.size());
     const std::vector<Index>& active = values_.active_cells();
-    std::vector<std::size_t> firsts{0};
-    for (const Index c : active) firsts.push_back(firsts.back() + values_.at(c).size());
     for (int step = 0; step < steps_; ++step) {
       parallel_for(active.size(), 256, [&](std::size_t n) {
         const std::span<const Entry> own = values_.at(active[n]);
-        const double size = values_.size(active[n]);
         for (std::size_t e = 0; e < own.size(); ++e) {
-          const double width = widths[own[e].material] * size, time = 0.5 * width * width / steps_;
+          const std::size_t at = firsts_[n] + e;
+          // Cells that are so small that this would not be stable are smoothed less.
+          const double wanted = 0.5 * widths_[at] * widths_[at] / steps_,
+                       time = rates_[n] > 0 ? std::min(wanted, kDiffusionStep / rates_[n]) : wanted;
           double change = 0;
-          for (std::size_t s = first_[n]; s < first_[n + 1]; ++s)
-            change += sides_[s].rate *
-                      (part_of(sides_[s].cell, own[e].material, firsts, parts) - parts[firsts[n] + e]);
-          next[firsts[n] + e] = parts[firsts[n] + e] + time * change;
+          for (std::size_t s = first_sides_[n]; s < first_sides_[n + 1]; ++s)
+            change += sides_[s].rate * (part_of(sides_[s].cell, own[e].material, parts) - parts[at]);
+          next[at] = parts[at] + time * change;
         }
       });
       parts.swap(next);
@@ -109,6 +99,29 @@ class Diffusion {
   }
 
  private:
+  /// Adds the sides of a cell; returns the sum of the rates of its faces.
+  double add_sides(Index c) {
+    const PolyhedralMesh& mesh = values_.subdivision().mesh();
+    if (!(mesh.cell_volume(c) > 0)) return 0;
+    const double least = kLeastDistance * values_.size(c);
+    double rate = 0;
+    Vec3 open;  // the area of the cell's faces at the boundary
+    for (const Index f : mesh.faces_of_cell(c)) {
+      const Index other = mesh.neighbour(c, f);
+      const Vec3 area = face_area(f);
+      if (other == PolyhedralMesh::kNone) {
+        open += area;
+        continue;
+      }
+      // The flux that passes a face, by the difference of the two cells.
+      const double away = std::max(distance(mesh.cell_center(c), mesh.cell_center(other)), least);
+      sides_.push_back({other, norm(area) / (away * mesh.cell_volume(c))});
+      rate += sides_.back().rate;
+    }
+    if (squared_norm(open) > 0) add_boundary(c, (1 / mesh.cell_volume(c)) * open);
+    return rate;
+  }
+
   /// The area of a face as a vector that points out of its first cell.
   [[nodiscard]] Vec3 face_area(Index f) const {
     const PolyhedralMesh& mesh = values_.subdivision().mesh();
@@ -141,11 +154,10 @@ class Diffusion {
       if (ring[i] != c) sides_.push_back({ring[i], along.dot(rows[i]) / rows[i].squaredNorm()});
     }
   }
-  [[nodiscard]] double part_of(Index cell, std::uint16_t material, const std::vector<std::size_t>& firsts,
-                               const std::vector<double>& parts) const {
+  [[nodiscard]] double part_of(Index cell, std::uint16_t material, const std::vector<double>& parts) const {
     const std::span<const Entry> own = values_.at(cell);
     for (std::size_t e = 0; e < own.size(); ++e) {
-      if (own[e].material == material) return place_[cell] == kNone ? 1 : parts[firsts[place_[cell]] + e];
+      if (own[e].material == material) return place_[cell] == kNone ? 1 : parts[firsts_[place_[cell]] + e];
     }
     return 0;
   }
@@ -155,9 +167,11 @@ class Diffusion {
     double rate;
   };
   const MeshValues& values_;
-  std::vector<std::uint32_t> place_;
-  std::vector<std::size_t> first_;
+  std::vector<double> widths_;
+  std::vector<std::uint32_t> place_;               // by cell: its place among active ones, or kNone
+  std::vector<std::size_t> firsts_, first_sides_;  // by active cell: its first entry and side
   std::vector<Side> sides_;
+  std::vector<double> rates_;  // by active cell: of its faces, together
   int steps_ = 1;
 };
 
@@ -167,7 +181,9 @@ class Correction {
       : data_(data), values_(values), progress_(progress), volumes_(values) {}
 
   MeshAgreement run() {
-    const std::vector<double> found = step_widths(data_, values_);
+    const Steps steps = find_steps(data_, values_);
+    extents_ = steps.extents;
+    const std::vector<double>& found = steps.widths;
     const double widest = found.empty() ? 0 : *std::ranges::max_element(found);
     // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
     if (widest < kSurelyBlurred) {
@@ -179,6 +195,7 @@ class Correction {
     if (values_.active_cells().empty()) return agreement_;
     close_totals();
     measure(false);
+    find_lost();
     return agreement_;
   }
 
@@ -188,7 +205,7 @@ class Correction {
     widths_ = widths;
     blurs_.clear();
     diffusion_.reset();
-    set_start_values(data_, widths, values_);
+    set_start_values(data_, widths, extents_, values_);
     find_blur();
     if (values_.active_cells().empty()) return;
     const bool blurred = std::ranges::any_of(widths, [](double width) { return width > 0; });
@@ -196,7 +213,12 @@ class Correction {
       // The cells themselves are a part of the width.
       for (const double width : widths)
         blurs_.push_back(std::sqrt(std::max(0.0, width * width - kCellVariance)));
-      diffusion_.emplace(values_, blurs_);
+      std::vector<double> lengths;
+      for (const Index c : values_.active_cells()) {
+        for (const Entry& entry : std::as_const(values_).at(c))
+          lengths.push_back(blurs_[entry.material] * extents_[lengths.size()]);
+      }
+      diffusion_.emplace(values_, std::move(lengths));
     }
     const int most = blurred ? kRoundsBlurred : kMostRounds;
     double before = std::numeric_limits<double>::infinity();
@@ -204,7 +226,10 @@ class Correction {
     for (int round = 0; round <= most; ++round) {
       progress_.step("correcting volumes", static_cast<double>(round) / most);
       measure(true);
-      if (agreement_.cells.mean_difference >= before) return restore(best);
+      if (agreement_.cells.mean_difference >= before) {
+        restore(best);
+        return measure(false);
+      }
       if (agreement_.cells.greatest_difference <= kEnough || round == most) return;
       if (!blurred && agreement_.cells.mean_difference > kSlow * before) return;
       before = agreement_.cells.mean_difference;
@@ -213,15 +238,17 @@ class Correction {
     }
   }
 
-  /// Measures parts of cells, those that blurred fractions show, and how far they are from the fractions.
-  void measure(bool growth) {
+  /// Measures parts of cells and, if they are to be compared, those that blurred fractions show, and how far
+  /// they are from the fractions.
+  void measure(bool growth, bool compared = true) {
     values_.interpolate();
     volumes_.measure(growth);
     const std::vector<Index>& active = values_.active_cells();
     shown_.clear();
     for (std::size_t n = 0; n < active.size(); ++n)
       shown_.insert(shown_.end(), volumes_.parts(n).begin(), volumes_.parts(n).end());
-    if (diffusion_) diffusion_->run(blurs_, shown_);
+    if (diffusion_ && compared) diffusion_->run(shown_);
+    if (!compared) return;
     CellAgreement& found = agreement_.cells;
     found = {.tolerance = diffusion_ ? kToleranceBlurred : kTolerance};
     double sum = 0;
@@ -293,16 +320,15 @@ class Correction {
     std::vector<double> moves;
     std::size_t at = 0;
     for (std::size_t n = 0; n < active.size(); ++n) {
-      const double size = values_.size(active[n]);
       const std::span<const double> growths = volumes_.growths(n);
       const std::span<const Entry> own = std::as_const(values_).at(active[n]);
-      for (std::size_t e = 0; e < own.size(); ++e) {
-        const double missing = static_cast<double>(own[e].fraction) - shown_[at++];
+      for (std::size_t e = 0; e < own.size(); ++e, ++at) {
+        const double missing = static_cast<double>(own[e].fraction) - shown_[at], extent = extents_[at];
         const double width = widths_[own[e].material];
-        const double by = width > 0      ? width * size * std::sqrt(2 * std::numbers::pi) * missing
-                          : missing == 0 ? 0
-                                         : missing / std::max(growths[e], kLeastGrowth / size);
-        moves.push_back(std::clamp(by, -kMostMove * size, kMostMove * size));
+        const double by = missing == 0 ? 0
+                          : width > 0  ? width * extent * std::sqrt(2 * std::numbers::pi) * missing
+                                       : missing / std::max(growths[e], kLeastGrowth / extent);
+        moves.push_back(std::clamp(by, -kMostMove * extent, kMostMove * extent));
       }
     }
     if (diffusion_) continue_moves(moves);
@@ -364,6 +390,67 @@ class Correction {
     }
   }
 
+  /// Finds the groups of cells that share points and hold a material of which no part is shown there.
+  void find_lost() {
+    struct Group {
+      LostPlace place;
+      bool shown = false;
+    };
+    const PolyhedralMesh& mesh = data_.mesh;
+    const std::vector<Index>& active = values_.active_cells();
+    std::vector<std::uint32_t> firsts{0}, place(mesh.cell_count(), kNone);
+    for (std::uint32_t n = 0; n < active.size(); ++n) {
+      place[active[n]] = n;
+      firsts.push_back(firsts.back() + static_cast<std::uint32_t>(values_.at(active[n]).size()));
+    }
+    const auto holds = [](const Entry& entry) { return entry.fraction > kFractionTrace; };
+    DisjointSets sets(firsts.back());
+    std::vector<std::uint32_t> first_of_material(values_.material_count(), kNone);
+    for (std::size_t p = 0; p < mesh.points().size(); ++p) {
+      for (const bool joins : {true, false}) {
+        for (const Index c : mesh.cells_round(p)) {
+          if (place[c] == kNone) continue;
+          const std::span<const Entry> own = std::as_const(values_).at(c);
+          for (std::uint32_t e = 0; e < own.size(); ++e) {
+            if (!holds(own[e])) continue;
+            std::uint32_t& first = first_of_material[own[e].material];
+            const std::uint32_t here = firsts[place[c]] + e;
+            if (!joins) {
+              first = kNone;
+            } else if (first == kNone) {
+              first = here;
+            } else {
+              sets.join(first, here);
+            }
+          }
+        }
+      }
+    }
+    const std::vector<std::uint32_t> roots = std::move(sets).roots();
+    std::map<std::uint32_t, Group> groups;
+    for (std::uint32_t n = 0; n < active.size(); ++n) {
+      const std::span<const Entry> own = std::as_const(values_).at(active[n]);
+      for (std::uint32_t e = 0; e < own.size(); ++e) {
+        if (!holds(own[e])) continue;
+        Group& group = groups[roots[firsts[n] + e]];
+        const auto fraction = static_cast<double>(own[e].fraction);
+        const double volume = fraction * mesh.cell_volume(active[n]);
+        group.shown = group.shown || volumes_.parts(n)[e] > 0;
+        group.place.material = values_.material(own[e].material).value;
+        group.place.volume += volume;
+        ++group.place.cells;
+        group.place.greatest_fraction = std::max(group.place.greatest_fraction, fraction);
+        group.place.place += volume * mesh.cell_center(active[n]);
+      }
+    }
+    for (auto& [root, group] : groups) {
+      if (group.shown || !(group.place.volume > 0)) continue;
+      group.place.place *= 1 / group.place.volume;
+      group.place.within_one_step = group.place.greatest_fraction <= data_.report.step;
+      agreement_.lost.push_back(group.place);
+    }
+  }
+
   /// Moves all values of each material by one offset until it has its volume.
   void close_totals() {
     const std::size_t count = values_.material_count();
@@ -380,7 +467,7 @@ class Correction {
     }
     for (int round = 0; round < kMostClosings; ++round) {
       progress_.step("closing volumes", static_cast<double>(round) / kMostClosings);
-      measure(true);
+      measure(true, false);
       std::vector<double> owned = sole;
       std::map<std::pair<std::uint16_t, std::uint16_t>, double> exchanged;
       for (std::size_t n = 0; n < active.size(); ++n) {
@@ -422,8 +509,9 @@ class Correction {
   MeshValues& values_;
   Progress& progress_;
   MeshVolumes volumes_;
-  std::vector<double> widths_;  // by material, in sizes of cells; 0 for a sharp one
-  std::vector<double> blurs_;   // those without the part of the cells
+  std::vector<double> extents_;  // by entry of active cells (Steps)
+  std::vector<double> widths_;   // by material, in extents of cells; 0 for a sharp one
+  std::vector<double> blurs_;    // those without the part of the cells
   std::optional<Diffusion> diffusion_;
   std::vector<double> shown_;  // by entry of active cells
   MeshAgreement agreement_;
@@ -460,6 +548,10 @@ void MeshVolumes::measure_cell(std::size_t n, bool growth) {
   if (!(subdivision.mesh().cell_volume(cell) > 0)) {
     // A tangled cell is left as it is.
     for (std::size_t e = 0; e < own.size(); ++e) parts[e] = static_cast<double>(own[e].fraction);
+    return;
+  }
+  if (const auto sole = values_.sole_owner(cell)) {
+    parts[place(*sole)] = 1;
     return;
   }
   const double unit = 1 / subdivision.mesh().cell_volume(cell);

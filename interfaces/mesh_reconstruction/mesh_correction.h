@@ -12,6 +12,7 @@ namespace adamas::interfaces {
 struct MeshAgreement {
   FractionFindings findings;  ///< without the areas
   CellAgreement cells;
+  std::vector<LostPlace> lost;  ///< groups of cells that hold a material of which nothing is shown there
 };
 
 /// Sets values so that cells hold their fractions: distances from planes that cut off the fractions of sharp

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
@@ -35,6 +36,22 @@ class Boundary {
   explicit Boundary(const PolyhedralMesh& mesh)
       : mesh_(mesh), fills_box_(mesh.fills_box()), tolerance_(kOnSide * mesh.box().diagonal()) {}
 
+  /// Throws Error, with the name, if the cells fill the box, but some of them share only parts of faces.
+  void check(const std::string& name) const {
+    if (!fills_box_) return;
+    std::size_t count = 0;
+    Vec3 first;
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
+      if (mesh_.cells_of_face(f)[1] != PolyhedralMesh::kNone || is_on_side(static_cast<Index>(f))) continue;
+      if (count++ == 0) first = mesh_.face_center(f);
+    }
+    if (count == 0) return;
+    fail(
+        "{}: expected cells that share whole faces, found {} faces inside the mesh that one cell alone has, "
+        "the "
+        "first at {:.6g},{:.6g},{:.6g}",
+        name, count, first.x, first.y, first.z);
+  }
   [[nodiscard]] bool has_outside(Index face) const {
     return !fills_box_ && mesh_.cells_of_face(face)[1] == PolyhedralMesh::kNone && !is_on_side(face);
   }
@@ -76,11 +93,7 @@ class Extraction {
         problem.add_function(material.values, material.number);
       }
       keep_owners(problem);
-      std::array<std::uint64_t, 4> ids{};
-      std::array<Vec3, 4> positions{};
-      for (std::size_t c = 0; c < 4; ++c)
-        ids[c] = corners[c], positions[c] = subdivision_.position(corners[c]);
-      buffer.add(ids, positions, problem);
+      add_contacts(corners, problem, buffer);
     });
   }
 
@@ -102,6 +115,38 @@ class Extraction {
   }
 
  private:
+  /// Adds the contacts of a tetrahedron of the subdivision. The buffer turns polygons by the sign of its
+  /// volume, but what counts is the order of its corners, also where a cell is tangled.
+  void add_contacts(const std::array<Index, 4>& corners, const OwnershipProblem& problem,
+                    ContactBuffer& buffer) const {
+    std::array<std::uint64_t, 4> ids{};
+    std::array<Vec3, 4> positions{}, places{};
+    for (std::size_t c = 0; c < 4; ++c) ids[c] = corners[c], positions[c] = subdivision_.position(corners[c]);
+    const std::array<std::size_t, 4> order = ContactBuffer::ascending(ids);
+    bool odd = false;
+    for (std::size_t i = 0; i < 4; ++i) {
+      places[i] = positions[order[i]];
+      for (std::size_t j = i + 1; j < 4; ++j) odd = odd != (order[j] < order[i]);
+    }
+    if (odd == (signed_volume(places[0], places[1], places[2], places[3]) < 0))
+      return buffer.add(ids, positions, problem);
+    thread_local ContactBuffer turned;
+    thread_local std::vector<ContactBuffer::Corner> polygon;
+    turned.clear();
+    turned.add(ids, positions, problem);
+    turned.for_each_polygon(
+        [&](std::uint32_t front, std::uint32_t back, std::span<const ContactBuffer::Corner> old) {
+          const std::size_t count = old.size();
+          polygon.clear();
+          for (std::size_t i = 0; i < count; ++i) {
+            polygon.push_back(old[count - 1 - i]);
+            // The edge to the next corner is the one that arrived at this corner before.
+            polygon.back().leaving = old[(2 * count - 2 - i) % count].leaving;
+          }
+          buffer.add_polygon(front, back, polygon);
+        });
+  }
+
   /// The place of the point beyond a face among the ids of its tetrahedron: its id is the greatest.
   static constexpr std::size_t kBeyond = 3;
   static constexpr std::uint64_t kBeyondId = std::numeric_limits<std::uint64_t>::max() - 1;
@@ -213,21 +258,25 @@ class Extraction {
   std::uint32_t outside_;
 };
 
-/// Returns whether all points of a face lie in a plane.
+/// Returns whether a face is plane and convex, without corners on its edges, so that triangles from any of
+/// its points divide it.
 bool is_plane(const PolyhedralMesh& mesh, std::span<const Index> points) {
   Vec3 normal, center;
   for (const Index p : points) center += mesh.points()[p];
   center *= 1.0 / static_cast<double>(points.size());
   double size = 0;
+  const auto place = [&](std::size_t i) { return mesh.points()[points[i % points.size()]]; };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 a = mesh.points()[points[i]] - center,
-               b = mesh.points()[points[(i + 1) % points.size()]] - center;
-    normal += cross(a, b);
-    size = std::max(size, norm(a));
+    normal += cross(place(i) - center, place(i + 1) - center);
+    size = std::max(size, norm(place(i) - center));
   }
   normal = normalized(normal);
-  return std::ranges::all_of(
-      points, [&](Index p) { return std::abs(dot(mesh.points()[p] - center, normal)) <= kPlane * size; });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(std::abs(dot(place(i) - center, normal)) <= kPlane * size)) return false;
+    const Vec3 turn = cross(place(i + 1) - place(i), place(i + 2) - place(i + 1));
+    if (!(dot(turn, normal) > kPlane * size * size)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -241,11 +290,11 @@ IdVector<MaterialId, std::string> materials_with_outside(const MeshData& data) {
 
 InterfaceMesh interfaces_of_values(const MeshData& data, const MeshValues& values, Progress& progress) {
   const PolyhedralMesh& mesh = data.mesh;
-  const MeshSubdivision& subdivision = values.subdivision();
   const IdVector<MaterialId, std::string> materials = materials_with_outside(data);
   const auto outside = static_cast<std::uint16_t>(values.material_count());
   const Extraction extraction(values, outside);
   const Boundary boundary(mesh);
+  boundary.check(data.source);
   std::vector<char> is_active(mesh.cell_count(), 0);
   for (const Index c : values.active_cells()) is_active[c] = 1;
   constexpr std::size_t kBatch = 4096, kChunk = 64;
@@ -282,7 +331,6 @@ InterfaceMesh interfaces_of_values(const MeshData& data, const MeshValues& value
   // A material called kOutside is one with what is beyond it.
   std::erase_if(result.triangles, [](const InterfaceTriangle& t) { return t.front == t.back; });
   drop_unused_points(result);
-  static_cast<void>(subdivision);
   return result;
 }
 
@@ -293,6 +341,7 @@ InterfaceMesh interfaces_of_labels(const MeshData& data) {
   result.materials = materials_with_outside(data);
   const MaterialId outside = outside_of(result.materials);
   const Boundary boundary(mesh);
+  boundary.check(data.source);
   result.points = mesh.points();
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const auto& [first, second] = mesh.cells_of_face(f);

@@ -23,6 +23,7 @@ using Entry = MeshValues::Entry;
 constexpr double kShown = 0.1;
 /// Widths are found from at most so many cells.
 constexpr std::size_t kMostShown = 20000;
+constexpr std::uint32_t kNone = 0xffffffffu;
 /// The greatest width.
 constexpr double kWidest = 3;
 /// Values of blurred materials are clipped at this many widths.
@@ -39,14 +40,17 @@ struct CellPlane {
 class Start {
  public:
   Start(const MeshData& data, MeshValues& values)
-      : data_(data), values_(values), mesh_(data.mesh), subdivision_(values.subdivision()) {}
+      : values_(values), mesh_(data.mesh), subdivision_(values.subdivision()) {}
 
-  std::vector<double> widths() {
+  Steps steps() {
     find_gradients_of_fractions();
-    return find_widths();
+    Steps result;
+    result.extents = find_extents();
+    result.widths = find_widths(result.extents);
+    return result;
   }
 
-  void run(const std::vector<double>& widths) {
+  void run(const std::vector<double>& widths, const std::vector<double>& extents) {
     find_gradients_of_fractions();
     // Cells of one material have one value, from which points beside them are interpolated.
     for (std::size_t c = 0; c < mesh_.cell_count(); ++c) {
@@ -54,7 +58,7 @@ class Start {
     }
     for (int round = 0;; ++round) {
       find_planes(widths);
-      set_values(widths);
+      set_values(widths, extents);
       if (round == kNormalRounds) return;
       // The gradients of distances are better normals than those of fractions.
       find_gradients([this](Index cell, const Entry& entry) { return value(cell, entry.material); });
@@ -68,17 +72,67 @@ class Start {
     find_gradients([this](Index cell, const Entry& entry) { return fraction(cell, entry.material); });
   }
 
-  void set_values(const std::vector<double>& widths) {
+  void set_values(const std::vector<double>& widths, const std::vector<double>& extents) {
     const std::vector<Index>& active = values_.active_cells();
-    std::vector<std::vector<double>> found(active.size());
+    const std::vector<std::size_t> firsts = first_entries();
+    std::vector<double> found(firsts.back());
     parallel_for(active.size(), 64, [&](std::size_t n) {
-      for (const Entry& entry : std::as_const(values_).at(active[n]))
-        found[n].push_back(value_of(active[n], entry, widths[entry.material]));
+      const std::span<const Entry> own = std::as_const(values_).at(active[n]);
+      for (std::size_t e = 0; e < own.size(); ++e)
+        found[firsts[n] + e] = value_of(active[n], own[e], widths[own[e].material] * extents[firsts[n] + e]);
     });
     for (std::size_t n = 0; n < active.size(); ++n) {
       const std::span<Entry> own = values_.at(active[n]);
-      for (std::size_t e = 0; e < own.size(); ++e) own[e].value = found[n][e];
+      for (std::size_t e = 0; e < own.size(); ++e) own[e].value = found[firsts[n] + e];
     }
+  }
+
+  /// The numbers of the first entries of active cells, and of all at the end.
+  [[nodiscard]] std::vector<std::size_t> first_entries() const {
+    std::vector<std::size_t> firsts{0};
+    for (const Index c : values_.active_cells())
+      firsts.push_back(firsts.back() + std::as_const(values_).at(c).size());
+    return firsts;
+  }
+
+  /// The extents of cells along gradients, in the mean of the cells round them: blur is no property of single
+  /// cells.
+  [[nodiscard]] std::vector<double> find_extents() const {
+    const std::vector<Index>& active = values_.active_cells();
+    const std::vector<std::size_t> firsts = first_entries();
+    std::vector<double> own_extents(firsts.back(), 0), extents(firsts.back());
+    std::vector<std::uint32_t> place(mesh_.cell_count(), kNone);
+    for (std::uint32_t n = 0; n < active.size(); ++n) place[active[n]] = n;
+    parallel_for(active.size(), 64, [&](std::size_t n) {
+      const Index c = active[n];
+      for (std::size_t e = 0; firsts[n] + e < firsts[n + 1]; ++e) {
+        if (!gradients_[c].empty() && squared_norm(gradients_[c][e]) > 0)
+          own_extents[firsts[n] + e] = values_.extent(c, normalized(gradients_[c][e]));
+      }
+    });
+    parallel_for(active.size(), 64, [&](std::size_t n) {
+      const Index c = active[n];
+      thread_local std::vector<Index> ring;
+      const std::array<Index, 1> self{c};
+      subdivision_.find_ring(self, ring);
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        double sum = 0;
+        int count = 0;
+        for (const Index other : ring) {
+          if (place[other] == kNone) continue;
+          const std::span<const Entry> there = std::as_const(values_).at(other);
+          const auto found = std::ranges::find(there, own[e].material, &Entry::material);
+          if (found == there.end()) continue;
+          const double extent =
+              own_extents[firsts[place[other]] + static_cast<std::size_t>(found - there.begin())];
+          sum += extent;
+          count += extent > 0 ? 1 : 0;
+        }
+        extents[firsts[n] + e] = count > 0 ? sum / count : values_.size(c);
+      }
+    });
+    return extents;
   }
 
   /// Finds the gradients of what value_of(cell, entry) says, at mixed entries, from the cells round, by least
@@ -130,42 +184,43 @@ class Start {
   }
 
   /// The widths of steps: the median of those with which the gradients found are those of a plane step.
-  [[nodiscard]] std::vector<double> find_widths() const {
-    std::vector<std::pair<Index, std::size_t>> shown;  // cells and entries
-    for (const Index c : values_.active_cells()) {
+  [[nodiscard]] std::vector<double> find_widths(const std::vector<double>& extents) const {
+    struct Shown {
+      Index cell;
+      std::size_t entry;
+      double extent;
+    };
+    std::vector<std::vector<Shown>> shown(values_.material_count());
+    const std::vector<std::size_t> firsts = first_entries();
+    for (std::size_t n = 0; n < values_.active_cells().size(); ++n) {
+      const Index c = values_.active_cells()[n];
       const std::span<const Entry> own = std::as_const(values_).at(c);
       for (std::size_t e = 0; e < own.size() && !gradients_[c].empty(); ++e) {
-        if (own[e].fraction >= kShown && own[e].fraction <= 1 - kShown) shown.emplace_back(c, e);
+        if (own[e].fraction >= kShown && own[e].fraction <= 1 - kShown)
+          shown[own[e].material].push_back({c, e, extents[firsts[n] + e]});
       }
     }
-    const std::size_t stride = shown.size() / kMostShown + 1;
-    std::vector<double> widths((shown.size() + stride - 1) / stride);
-    parallel_for(widths.size(), 32, [&](std::size_t n) {
-      const auto [c, e] = shown[n * stride];
-      widths[n] = width_at(c, std::as_const(values_).at(c)[e], gradients_[c][e]);
-    });
-    std::vector<std::vector<double>> found(values_.material_count());
-    for (std::size_t n = 0; n < widths.size(); ++n) {
-      const auto [c, e] = shown[n * stride];
-      found[std::as_const(values_).at(c)[e].material].push_back(widths[n]);
-    }
     std::vector<double> result;
-    for (std::vector<double>& own : found) {
-      const double width = own.empty() ? 0 : median(own);
-      result.push_back(std::min(width, kWidest));
+    for (const std::vector<Shown>& of_one : shown) {
+      const std::size_t stride = of_one.size() / kMostShown + 1;
+      std::vector<double> widths((of_one.size() + stride - 1) / stride);
+      parallel_for(widths.size(), 32, [&](std::size_t n) {
+        const auto& [c, e, extent] = of_one[n * stride];
+        widths[n] = width_at(c, std::as_const(values_).at(c)[e], gradients_[c][e], extent);
+      });
+      result.push_back(widths.empty() ? 0 : std::min(median(widths), kWidest));
     }
     return result;
   }
 
-  /// Returns the width, in sizes of the cell, of a plane step whose gradient over the cells round, as
+  /// Returns the width, in extents of the cell, of a plane step whose gradient over the cells round, as
   /// find_gradients() finds it, is as steep as that found.
-  [[nodiscard]] double width_at(Index c, const Entry& entry, const Vec3& gradient) const {
+  [[nodiscard]] double width_at(Index c, const Entry& entry, const Vec3& gradient, double size) const {
     thread_local std::vector<Index> ring;
     const std::array<Index, 1> self{c};
     subdivision_.find_ring(self, ring);
     const Vec3 towards = normalized(gradient);
-    const double size = values_.size(c), slope = norm(gradient) * size,
-                 at = normal_quantile(static_cast<double>(entry.fraction));
+    const double slope = norm(gradient) * size, at = normal_quantile(static_cast<double>(entry.fraction));
     std::vector<std::array<double, 2>> round;  // heights along the gradient, with weights
     double squares = 0;
     for (const Index other : ring) {
@@ -243,12 +298,12 @@ class Start {
     return 0.5 * (less + more);
   }
 
-  /// Returns the value of an entry of an active cell.
+  /// Returns the value of an entry of an active cell. `width`: that of a blurred step as a length, or 0.
   [[nodiscard]] double value_of(Index c, const Entry& entry, double width) const {
     const double size = values_.size(c);
     if (width > 0) {
       const double f = std::clamp(static_cast<double>(entry.fraction), 1e-12, 1 - 1e-12);
-      return width * size * std::clamp(normal_quantile(f), -kFarthest, kFarthest);
+      return width * std::clamp(normal_quantile(f), -kFarthest, kFarthest);
     }
     const std::span<const Entry> own = std::as_const(values_).at(c);
     const auto place = static_cast<std::size_t>(&entry - own.data());
@@ -308,7 +363,6 @@ class Start {
     return least;
   }
 
-  const MeshData& data_;
   MeshValues& values_;
   const PolyhedralMesh& mesh_;
   const MeshSubdivision& subdivision_;
@@ -318,12 +372,11 @@ class Start {
 
 }  // namespace
 
-std::vector<double> step_widths(const MeshData& data, MeshValues& values) {
-  return Start(data, values).widths();
-}
+Steps find_steps(const MeshData& data, MeshValues& values) { return Start(data, values).steps(); }
 
-void set_start_values(const MeshData& data, const std::vector<double>& widths, MeshValues& values) {
-  Start(data, values).run(widths);
+void set_start_values(const MeshData& data, const std::vector<double>& widths,
+                      const std::vector<double>& extents, MeshValues& values) {
+  Start(data, values).run(widths, extents);
 }
 
 }  // namespace adamas::interfaces

@@ -7,13 +7,21 @@
 
 namespace adamas::interfaces {
 
-/// Returns, by number of a material, how wide its steps are in sizes of cells, the cells included, so that
-/// those of a plane sharp interface are some 0.3; 0 where no cell shows it.
-std::vector<double> step_widths(const MeshData& data, MeshValues& values);
+/// The steps of the fractions of materials.
+struct Steps {
+  /// By number of a material: the width in extents of cells along the gradient, the cells included, so that
+  /// that of a plane sharp interface is some 0.3; 0 where no cell shows it.
+  std::vector<double> widths;
+  /// By entry of active cells: the extent of the cell along the gradient of the fraction, or the size of the
+  /// cell where there is no gradient.
+  std::vector<double> extents;
+};
+Steps find_steps(const MeshData& data, MeshValues& values);
 
-/// Sets the values from which correction starts. Values of sharp materials, whose width is 0, are distances
-/// from the planes that cut off the fractions of mixed cells, and their continuation beside these; those of
-/// blurred ones are the width times the normal quantile of the fraction.
-void set_start_values(const MeshData& data, const std::vector<double>& widths, MeshValues& values);
+/// Sets the values from which correction starts. Values of sharp materials, whose width in `widths` is 0, are
+/// distances from the planes that cut off the fractions of mixed cells, and their continuation beside these;
+/// those of blurred ones are the width times the normal quantile of the fraction.
+void set_start_values(const MeshData& data, const std::vector<double>& widths,
+                      const std::vector<double>& extents, MeshValues& values);
 
 }  // namespace adamas::interfaces

@@ -68,6 +68,7 @@ MeshValues::MeshValues(const MeshData& data, const MeshSubdivision& subdivision)
   stencils_.resize(points_.size());
   parallel_for(points_.size(), 256,
                [&](std::size_t n) { subdivision.find_stencil(points_[n], stencils_[n]); });
+  owners_.assign(points_.size(), 0);
   first_of_point_.push_back(0);
   std::vector<std::uint16_t> common;
   for (const MeshSubdivision::Stencil& stencil : stencils_) {
@@ -84,6 +85,26 @@ double MeshValues::size(std::size_t cell) const {
   return std::cbrt(std::abs(subdivision_.mesh().cell_volume(cell)));
 }
 
+double MeshValues::extent(Index cell, const Vec3& direction) const {
+  const Vec3 center = subdivision_.mesh().cell_center(cell);
+  double moment = 0, first = 0, volume = 0;
+  subdivision_.for_each_tetrahedron(cell, [&](const std::array<Index, 4>& corners) {
+    double sum = 0, squares = 0;
+    for (const Index corner : corners) {
+      const double height = dot(subdivision_.position(corner) - center, direction);
+      sum += height;
+      squares += height * height;
+    }
+    const double own = subdivision_.volume(corners);
+    moment += own * (squares + sum * sum) / 20;
+    first += own * sum / 4;
+    volume += own;
+  });
+  if (!(volume > 0)) return size(cell);
+  const double mean = first / volume, variance = moment / volume - mean * mean;
+  return variance > 0 ? std::sqrt(12 * variance) : size(cell);
+}
+
 void MeshValues::interpolate() {
   parallel_for(points_.size(), 1024, [&](std::size_t n) {
     const auto& [cells, weights] = stencils_[n];
@@ -96,7 +117,18 @@ void MeshValues::interpolate() {
       }
       of_points_[e].value = sum;
     }
+    owners_[n] = greatest(at_point(points_[n]));
   });
+}
+
+template <class Entries>
+std::uint16_t MeshValues::greatest(const Entries& entries) {
+  std::uint16_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const auto& entry : entries) {
+    if (entry.value > most) best = entry.material, most = entry.value;
+  }
+  return best;
 }
 
 std::span<const MeshValues::PointEntry> MeshValues::at_point(Index point) const {
@@ -105,19 +137,19 @@ std::span<const MeshValues::PointEntry> MeshValues::at_point(Index point) const 
 }
 
 std::uint16_t MeshValues::owner(Index point) const {
-  std::uint16_t best = 0;
-  double most = -std::numeric_limits<double>::infinity();
-  const auto look = [&](const auto& entries) {
-    for (const auto& entry : entries) {
-      if (entry.value > most) best = entry.material, most = entry.value;
-    }
-  };
-  if (point < place_of_point_.size()) {
-    look(at_point(point));
-  } else {
-    look(at(point - place_of_point_.size()));
+  if (point < place_of_point_.size()) return owners_[place_of_point_[point]];
+  return greatest(at(point - place_of_point_.size()));
+}
+
+std::optional<std::uint16_t> MeshValues::sole_owner(Index cell) const {
+  const PolyhedralMesh& mesh = subdivision_.mesh();
+  const std::uint16_t first = owner(subdivision_.cell_center(cell));
+  const auto differs = [&](Index point) { return owner(point) != first; };
+  if (std::ranges::any_of(mesh.points_of_cell(cell), differs)) return {};
+  for (const Index f : mesh.faces_of_cell(cell)) {
+    if (differs(subdivision_.face_center(f))) return {};
   }
-  return best;
+  return first;
 }
 
 void MeshValues::find_materials(const std::array<Index, 4>& corners, std::vector<CornerValues>& found) const {

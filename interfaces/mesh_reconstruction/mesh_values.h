@@ -41,13 +41,18 @@ class MeshValues {
   [[nodiscard]] const std::vector<Index>& active_cells() const { return active_; }
   /// The number of the one material of a cell without several entries.
   [[nodiscard]] std::uint16_t sole(std::size_t cell) const { return at(cell)[0].material; }
-  /// A length of the size of a cell.
+  /// The size of a cube with the volume of a cell.
   [[nodiscard]] double size(std::size_t cell) const;
+  /// The extent of a cell along a direction of unit length: that of a box with the same second moment.
+  [[nodiscard]] double extent(Index cell, const Vec3& direction) const;
 
   /// Computes the values at the points of active cells from those at cell centres.
   void interpolate();
   /// Returns the number of the material with the greatest value at a point of an active cell.
   [[nodiscard]] std::uint16_t owner(Index point) const;
+  /// Returns the number of the one material with the greatest value at all points of an active cell; none if
+  /// there are several.
+  [[nodiscard]] std::optional<std::uint16_t> sole_owner(Index cell) const;
   /// Finds the materials that may own a part of a tetrahedron of an active cell, ascending by number.
   void find_materials(const std::array<Index, 4>& corners, std::vector<CornerValues>& found) const;
 
@@ -57,6 +62,8 @@ class MeshValues {
     double value;
   };
   [[nodiscard]] std::span<const PointEntry> at_point(Index point) const;
+  template <class Entries>
+  [[nodiscard]] static std::uint16_t greatest(const Entries& entries);
 
   const MeshSubdivision& subdivision_;
   std::vector<MaterialId> by_name_;
@@ -70,6 +77,7 @@ class MeshValues {
   std::vector<MeshSubdivision::Stencil> stencils_;
   std::vector<std::uint32_t> first_of_point_;
   std::vector<PointEntry> of_points_;
+  std::vector<std::uint16_t> owners_;          ///< of these points
   std::vector<std::uint32_t> place_of_point_;  ///< by point: its place in points_, or kNone
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "interfaces/input/mesh_source.h"
 #include "interfaces/mesh_reconstruction/mesh_interfaces.h"
@@ -151,6 +152,175 @@ TEST(MeshReconstruction, InterfacesOfLabelsAreFacesOfCells) {
   data.check();
   const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
   expect_volumes(data, found.mesh);
+}
+
+/// The volumes of a ball blurred by a normal distribution, in cells of the jittered cube.
+MeshData blurred_ball(std::uint32_t n, double deviation) {
+  constexpr double kRadius = 0.31;
+  MeshData data;
+  data.source = "blurred";
+  data.mesh = jittered_cube(n);
+  data.materials.push_back("a");
+  data.materials.push_back("b");
+  const auto density = [&](const Vec3& p) {
+    const double r = std::max(distance(p, {0.52, 0.49, 0.5}), 1e-9), s = deviation * std::sqrt(2.0);
+    const double a = (kRadius - r) / s, b = (kRadius + r) / s;
+    return 0.5 * (std::erf(a) + std::erf(b)) -
+           deviation / (r * std::sqrt(2 * M_PI)) * (std::exp(-a * a) - std::exp(-b * b));
+  };
+  std::vector<float> fractions, rest;
+  const MeshSubdivision subdivision(data.mesh);
+  for (std::uint32_t c = 0; c < data.mesh.cell_count(); ++c) {
+    double sum = 0;
+    subdivision.for_each_tetrahedron(c, [&](const std::array<std::uint32_t, 4>& corners) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        // Exact for densities of degree two.
+        Vec3 p;
+        for (std::size_t j = 0; j < 4; ++j)
+          p += (i == j ? 0.58541020 : 0.13819660) * subdivision.position(corners[j]);
+        sum += 0.25 * subdivision.volume(corners) * density(p);
+      }
+    });
+    fractions.push_back(static_cast<float>(std::clamp(sum / data.mesh.cell_volume(c), 0.0, 1.0)));
+    rest.push_back(1 - fractions.back());
+  }
+  data.fractions.push_back(std::move(fractions));
+  data.fractions.push_back(std::move(rest));
+  data.normalise();
+  return data;
+}
+
+TEST(MeshReconstruction, ABlurredBallIsFound) {
+  constexpr std::uint32_t kCells = 16;
+  for (const double blur : {0.3, 1.0}) {
+    const MeshData data = blurred_ball(kCells, blur / kCells);
+    const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+    expect_volumes(data, found.mesh);
+    EXPECT_NEAR(found.agreement.findings.blur_median, std::sqrt(blur * blur + 1.0 / 12), 0.08);
+    double sum = 0, most = 0;
+    for (const Vec3& p : found.mesh.points) {
+      const double off = std::abs(0.31 - distance(p, {0.52, 0.49, 0.5}));
+      sum += off;
+      most = std::max(most, off);
+    }
+    EXPECT_LT(sum / static_cast<double>(found.mesh.points.size()), 0.05 / kCells) << blur;
+    EXPECT_LT(most, 0.25 / kCells) << blur;
+  }
+}
+
+/// Widths of steps are measured along the gradient, so that flat cells are no reason to see blur.
+TEST(MeshReconstruction, SharpFractionsOfFlatCellsAreSharp) {
+  const PolyhedralMesh mesh = to_mesh(make_hexahedra({8, 8, 4}, [](const Vec3& p) {
+    return Vec3{p.x, p.y, 0.05 * p.z};
+  }));
+  const Vec3 normal = normalized(Vec3{0.02, 0.01, 1});
+  const auto plane = [&](const Vec3& p) { return dot(p - Vec3{0.5, 0.5, 0.026}, normal); };
+  const MeshData data = sampled_data(mesh, plane, 10);
+  const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+  expect_volumes(data, found.mesh);
+  EXPECT_EQ(found.agreement.findings.blur_share, 0);
+  for (const Vec3& p : found.mesh.points) EXPECT_NEAR(plane(p), 0, 0.05 * 0.05 / 4);
+}
+
+TEST(MeshReconstruction, InterfacesInTangledCellsAreClosed) {
+  const PolyhedralMesh mesh = to_mesh(make_hexahedra({4, 4, 4}, [](const Vec3& p) {
+    return p == Vec3{0.5, 0.5, 0.5} ? Vec3{0.95, 0.95, 0.95} : p;
+  }));
+  ASSERT_GT(mesh.tangled_cells(), 0u);
+  MeshData data;
+  data.source = "tangled";
+  data.mesh = mesh;
+  data.materials.push_back("a");
+  data.materials.push_back("b");
+  std::vector<float> a, b;
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    a.push_back(static_cast<float>(std::clamp(2 * mesh.cell_center(c).x - 0.6, 0.0, 1.0)));
+    b.push_back(1 - a.back());
+  }
+  data.fractions.push_back(std::move(a));
+  data.fractions.push_back(std::move(b));
+  data.normalise();
+  const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+  const InterfaceMeshReport report = check_interface_mesh(
+      found.mesh, &data.mesh.box(), {.allow_flipped_edges = true, .allow_intersections = true});
+  EXPECT_EQ(report.open_border_edges, 0u);
+  EXPECT_EQ(report.flipped_edges, 0u);
+}
+
+TEST(MeshReconstruction, OneMaterialFillsTheBox) {
+  for (const bool labels : {false, true}) {
+    MeshData data;
+    data.source = "one";
+    data.mesh = jittered_cube(3);
+    for (const char* name : {"water", "air"}) data.materials.push_back(name);
+    if (labels) {
+      data.labels.assign(27, 1);
+    } else {
+      data.fractions.push_back(std::vector<float>(27, 0.0f));
+      data.fractions.push_back(std::vector<float>(27, 1.0f));
+    }
+    MeshField field;
+    field.name = "x";
+    std::vector<double> values;
+    for (std::size_t c = 0; c < 27; ++c) values.push_back(data.mesh.cell_center(c).x);
+    field.values = std::move(values);
+    data.fields.push_back(field);
+    data.check();
+    const ResamplingSource source = make_cells_source(data);
+    EXPECT_EQ(source.network->table().material(source.body_at({0.5, 0.5, 0.5}, nullptr)), MaterialId(1));
+    EXPECT_NEAR(source.volumes[MaterialId(1)], 1, 1e-14);
+    std::vector<double> row(1);
+    source.fields->values(MaterialId(1), {0.3, 0.6, 0.2}, row);
+    EXPECT_NEAR(row[0], 0.3, 1e-9);
+  }
+}
+
+TEST(MeshReconstruction, CellsThatShareOnlyPartsOfFacesAreRefused) {
+  // A cube beside four of half its size.
+  test::Hexahedra all = make_hexahedra({1, 1, 1}, [](const Vec3& p) { return p; });
+  const test::Hexahedra small = make_hexahedra({1, 2, 2}, [](const Vec3& p) { return p + Vec3{1, 0, 0}; });
+  const auto first = static_cast<std::uint32_t>(all.points.size());
+  all.points.insert(all.points.end(), small.points.begin(), small.points.end());
+  for (auto cell : small.cells) {
+    for (std::uint32_t& p : cell) p += first;
+    all.cells.push_back(cell);
+  }
+  MeshData data;
+  data.source = "parts";
+  data.mesh = to_mesh(all);
+  data.materials.push_back("a");
+  data.labels.assign(5, 0);
+  try {
+    reconstruct_mesh(data, SilentProgress::instance());
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "parts: expected cells that share whole faces, found 5 faces inside the mesh that one cell "
+              "alone has, "
+              "the first at 1,0.5,0.5");
+  }
+}
+
+/// A droplet in one cell is too small for its value to be the greatest anywhere: it is named.
+TEST(MeshReconstruction, WhatIsNotShownIsNamed) {
+  MeshData data = sampled_data(jittered_cube(6), [](const Vec3& p) { return 0.5 - p.x; });
+  data.materials.push_back("mist");
+  std::vector<float> mist(data.mesh.cell_count(), 0.0f);
+  mist[215] = 0.001f;
+  data.fractions[MaterialId(1)].own()[215] = 0.999f;
+  data.fractions.push_back(std::move(mist));
+  data.normalise();
+  const MeshReconstruction found = reconstruct_mesh(data, SilentProgress::instance());
+  double volume = 0;
+  for (const InterfaceTriangle& t : found.mesh.triangles)
+    volume += t.front == MaterialId(2) || t.back == MaterialId(2) ? 1 : 0;
+  if (volume == 0) {
+    ASSERT_EQ(found.agreement.lost.size(), 1u);
+    EXPECT_EQ(found.agreement.lost[0].material, 2u);
+    EXPECT_EQ(found.agreement.lost[0].cells, 1u);
+  } else {
+    EXPECT_TRUE(found.agreement.lost.empty());
+  }
 }
 
 TEST(MeshReconstruction, ThreadsChangeNothing) {

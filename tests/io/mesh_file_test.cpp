@@ -219,6 +219,7 @@ TEST(MeshFile, BlocksBecomeOneMesh) {
   EXPECT_EQ(file.cell_ends.size(), 16u);
   EXPECT_EQ(file.points.size(), 45u);
   EXPECT_EQ(file.blocks, (std::vector<std::string>{"steel", "air"}));
+  EXPECT_TRUE(says(file.remark, "array 'only here' is not read"));
   // Blocks are materials where nothing else is.
   std::vector<std::string> notes;
   MaterialDataOptions options;
@@ -228,8 +229,46 @@ TEST(MeshFile, BlocksBecomeOneMesh) {
   EXPECT_EQ(data.materials[MaterialId(0)], "steel");
   EXPECT_NEAR(data.volumes()[MaterialId(1)], 1, 1e-14);
   EXPECT_TRUE(data.mesh.fills_box());
-  ASSERT_EQ(notes.size(), 1u);
+  ASSERT_EQ(notes.size(), 2u);
   EXPECT_TRUE(says(notes[0], "its 2 blocks are the materials"));
+}
+
+/// Pieces of an unstructured grid have points of their own, which lie on each other.
+TEST(MeshFile, PiecesAreJoinedAtTheirPoints) {
+  const Scratch scratch;
+  for (const int n : {0, 1}) {
+    const auto grid = hexahedra_grid(test::make_hexahedra({2, 2, 2}, [n](const Vec3& p) {
+      return Vec3{p.x + n, p.y, p.z};
+    }));
+    write<vtkXMLUnstructuredGridWriter>(scratch / fmt::format("piece{}.vtu", n), grid.Get());
+  }
+  put_bytes(
+      scratch / "a.pvtu",
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\">\n"
+      "<PUnstructuredGrid GhostLevel=\"0\">\n<PCellData><PDataArray type=\"Float64\" Name=\"x of "
+      "cells\"/></PCellData>\n"
+      "<PPointData><PDataArray type=\"Float64\" Name=\"x of points\"/></PPointData>\n"
+      "<PPoints><PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints>\n"
+      "<Piece Source=\"piece0.vtu\"/>\n<Piece Source=\"piece1.vtu\"/>\n</PUnstructuredGrid>\n</VTKFile>\n");
+  const MeshFile file = read_mesh_file(scratch / "a.pvtu");
+  EXPECT_EQ(file.cell_ends.size(), 16u);
+  EXPECT_EQ(file.points.size(), 45u);
+  EXPECT_TRUE(says(file.remark, "9 points at the places of others are left out"));
+}
+
+/// A hexahedron without thickness vanishes, and its neighbours meet.
+TEST(MeshFile, CollapsedCellsAreLeftOut) {
+  auto hexahedra = test::make_hexahedra({3, 1, 1}, [](const Vec3& p) {
+    return Vec3{p.x > 0.5 && p.x < 0.9 ? 1.0 / 3 : p.x, p.y, p.z};
+  });
+  const auto grid = hexahedra_grid(hexahedra);
+  const Scratch scratch;
+  write<vtkXMLUnstructuredGridWriter>(scratch / "a.vtu", grid.Get());
+  const MeshFile file = read_mesh_file(scratch / "a.vtu");
+  EXPECT_EQ(file.cell_ends.size(), 2u);
+  EXPECT_EQ(file.arrays[0].size(), 2u);
+  EXPECT_TRUE(says(file.remark, "1 cells that have collapsed are left out"));
+  EXPECT_NEAR(volume_of(file), 1, 1e-14);
 }
 
 TEST(MeshFile, CopiesOfCellsOfOtherPiecesAreLeftOut) {

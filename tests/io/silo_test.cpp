@@ -25,6 +25,10 @@ using test::Scratch;
 /// of the second one, which is mixed, and "air" the rest; and a density that both have for themselves.
 void write_block(DBfile* file, double x0, bool curvilinear) {
   constexpr std::array<int, 3> kNodes{5, 4, 3}, kZones{4, 3, 2};
+  // Silo keeps the order of what it wrote before.
+  int order = DB_ROWMAJOR;
+  DBoptlist* const options = DBMakeOptlist(2);
+  DBAddOption(options, DBOPT_MAJORORDER, &order);
   std::vector<double> x, y, z;
   for (int k = 0; k < kNodes[2]; ++k) {
     for (int j = 0; j < kNodes[1]; ++j) {
@@ -47,7 +51,7 @@ void write_block(DBfile* file, double x0, bool curvilinear) {
   const std::array<void*, 3> coordinates{x.data(), y.data(), z.data()};
   const std::array<const char*, 3> names{"x", "y", "z"};
   ASSERT_EQ(DBPutQuadmesh(file, "mesh", names.data(), coordinates.data(), kNodes.data(), 3, DB_DOUBLE,
-                          curvilinear ? DB_NONCOLLINEAR : DB_COLLINEAR, nullptr),
+                          curvilinear ? DB_NONCOLLINEAR : DB_COLLINEAR, options),
             0);
   std::vector<int> list, next, material, zones;
   std::vector<double> fractions, density, mixed;
@@ -69,15 +73,13 @@ void write_block(DBfile* file, double x0, bool curvilinear) {
   }
   const std::array<int, 2> numbers{10, 20};
   std::array<const char*, 2> materials{"steel", "air"};
-  DBoptlist* const options = DBMakeOptlist(2);
   DBAddOption(options, DBOPT_MATNAMES, materials.data());
   ASSERT_EQ(DBPutMaterial(file, "materials", "mesh", 2, numbers.data(), list.data(), kZones.data(), 3,
                           next.data(), material.data(), zones.data(), fractions.data(),
                           static_cast<int>(material.size()), DB_DOUBLE, options),
             0);
-  DBFreeOptlist(options);
   ASSERT_EQ(DBPutQuadvar1(file, "density", "mesh", density.data(), kZones.data(), 3, mixed.data(),
-                          static_cast<int>(mixed.size()), DB_DOUBLE, DB_ZONECENT, nullptr),
+                          static_cast<int>(mixed.size()), DB_DOUBLE, DB_ZONECENT, options),
             0);
   std::vector<double> temperature;
   for (int k = 0; k < kNodes[2]; ++k) {
@@ -86,8 +88,9 @@ void write_block(DBfile* file, double x0, bool curvilinear) {
     }
   }
   ASSERT_EQ(DBPutQuadvar1(file, "temperature", "mesh", temperature.data(), kNodes.data(), 3, nullptr, 0,
-                          DB_DOUBLE, DB_NODECENT, nullptr),
+                          DB_DOUBLE, DB_NODECENT, options),
             0);
+  DBFreeOptlist(options);
 }
 
 DBfile* create(const std::filesystem::path& path, int driver) {
@@ -140,6 +143,56 @@ TEST(Silo, MixedZonesAndVariablesOfBothFormsOfFiles) {
   std::filesystem::copy_file(scratch / "a.silo", scratch / "a.h5");
   EXPECT_TRUE(is_mesh_by_header(scratch / "a.h5"));
   expect_blocks(read_mesh_data(scratch / "a.h5"), 1);
+}
+
+/// A mesh whose last index is the fastest has the same cells and values.
+TEST(Silo, OrdersOfArrays) {
+  const Scratch scratch;
+  constexpr std::array<int, 3> kNodes{3, 4, 5}, kZones{2, 3, 4};
+  for (const int driver : {DB_PDB, DB_HDF5}) {
+    for (const int order : {DB_ROWMAJOR, DB_COLMAJOR}) {
+      const auto fill = [&](const std::array<int, 3>& n, const auto& value) {
+        std::vector<double> result;
+        const bool first_is_fastest = order == DB_ROWMAJOR;
+        const auto [a, b, c] = first_is_fastest ? std::array{n[2], n[1], n[0]} : n;
+        for (int i = 0; i < a; ++i) {
+          for (int j = 0; j < b; ++j) {
+            for (int k = 0; k < c; ++k) result.push_back(first_is_fastest ? value(k, j, i) : value(i, j, k));
+          }
+        }
+        return result;
+      };
+      std::vector<double> x = fill(kNodes, [](int i, int, int) { return i; }),
+                          y = fill(kNodes, [](int, int j, int) { return j; }),
+                          z = fill(kNodes, [](int, int, int k) { return k; });
+      const std::vector<double> of_zones =
+          fill(kZones, [](int i, int j, int k) { return i + 10 * j + 100 * k; });
+      DBfile* const file = create(scratch / "a.silo", driver);
+      DBoptlist* const options = DBMakeOptlist(1);
+      int stated = order;
+      DBAddOption(options, DBOPT_MAJORORDER, &stated);
+      const std::array<void*, 3> coordinates{x.data(), y.data(), z.data()};
+      const std::array<const char*, 3> names{"x", "y", "z"};
+      DBPutQuadmesh(file, "mesh", names.data(), coordinates.data(), kNodes.data(), 3, DB_DOUBLE,
+                    DB_NONCOLLINEAR, options);
+      DBPutQuadvar1(file, "v", "mesh", of_zones.data(), kZones.data(), 3, nullptr, 0, DB_DOUBLE, DB_ZONECENT,
+                    options);
+      const std::array<int, 1> numbers{1};
+      const std::vector<int> list(24, 1);
+      DBPutMaterial(file, "materials", "mesh", 1, numbers.data(), list.data(), kZones.data(), 3, nullptr,
+                    nullptr, nullptr, nullptr, 0, DB_DOUBLE, options);
+      DBFreeOptlist(options);
+      DBClose(file);
+      const MeshData data = read_mesh_data(scratch / "a.silo");
+      ASSERT_EQ(data.mesh.cell_count(), 24u);
+      EXPECT_TRUE(data.mesh.fills_box());
+      ASSERT_EQ(data.fields.size(), 1u);
+      for (std::size_t c = 0; c < 24; ++c) {
+        const Vec3 p = data.mesh.cell_center(c) - Vec3{0.5, 0.5, 0.5};
+        EXPECT_NEAR(data.fields[0].values[c], p.x + 10 * p.y + 100 * p.z, 1e-9) << driver << " " << order;
+      }
+    }
+  }
 }
 
 TEST(Silo, BlocksInSeveralFilesBecomeOneMesh) {

@@ -121,6 +121,7 @@ void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
 }
 
 std::shared_ptr<Input::Contents> load_given_interfaces(const InputOptions& options, Progress& progress) {
+  if (options.data.extrude) wrong_usage("--extrude: expected a mesh of two dimensions as INPUT");
   const bool has_path = !options.path.empty();
   const bool gridded = has_path && input_kind(options.path) == InputKind::kGrid;
   if (has_path && !gridded && input_kind(options.path) != InputKind::kNetwork)
@@ -250,6 +251,8 @@ InterfaceMesh read_given_interfaces(const InputOptions& options) {
 
 MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
   const InputOptions options = needed_main_file(given);
+  if (options.data.extrude)
+    wrong_usage("--extrude: expected a mesh of two dimensions as INPUT, found {}", options.path.string());
   const std::optional<RawVolume> raw = raw_volume_of(options);
   MaterialDataOptions how = options.data;
   if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
