@@ -28,6 +28,8 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr double kWidest = 3;
 /// Values of blurred materials are clipped at this many widths.
 constexpr double kFarthest = 3.5;
+/// Planes are continued to so many layers of cells beside mixed ones.
+constexpr int kLayers = 3;
 /// Normals of planes are found again from distances so often.
 constexpr int kNormalRounds = 3;
 
@@ -58,6 +60,7 @@ class Start {
     }
     for (int round = 0;; ++round) {
       find_planes(widths);
+      for (int layer = 0; layer < kLayers; ++layer) continue_planes(widths);
       set_values(widths, extents);
       if (round == kNormalRounds) return;
       // The gradients of distances are better normals than those of fractions.
@@ -252,9 +255,8 @@ class Start {
     parallel_for(active.size(), 16, [&](std::size_t n) {
       const Index c = active[n];
       const std::span<const Entry> own = std::as_const(values_).at(c);
-      if (gradients_[c].empty()) return;
       planes_[c].resize(own.size());
-      for (std::size_t e = 0; e < own.size(); ++e) {
+      for (std::size_t e = 0; e < own.size() && !gradients_[c].empty(); ++e) {
         const double slope = norm(gradients_[c][e]);
         if (!is_mixed(own[e]) || !(slope > 0) || widths[own[e].material] > 0 || !(mesh_.cell_volume(c) > 0))
           continue;
@@ -262,6 +264,55 @@ class Start {
         planes_[c][e] = CellPlane{towards, cut(c, towards, static_cast<double>(own[e].fraction))};
       }
     });
+  }
+
+  /// Continues planes to the cells beside those that have them: those of cells that one material fills or is
+  /// absent from are the mean of those round them.
+  void continue_planes(const std::vector<double>& widths) {
+    struct Found {
+      Index cell;
+      std::size_t entry;
+      CellPlane plane;
+    };
+    const std::vector<Index>& active = values_.active_cells();
+    const std::vector<Found> all = parallel_collect<Found>(
+        active.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<Found>& list) {
+          std::vector<Index> ring;
+          for (std::size_t n = begin; n < end; ++n) {
+            const Index c = active[n];
+            const std::span<const Entry> own = std::as_const(values_).at(c);
+            bool known = false;
+            for (std::size_t e = 0; e < own.size(); ++e) {
+              if (is_mixed(own[e]) || planes_[c][e] || widths[own[e].material] > 0) continue;
+              if (!std::exchange(known, true)) subdivision_.find_ring(std::array{c}, ring);
+              if (const auto plane = continued_plane(c, own[e].material, ring))
+                list.push_back({c, e, *plane});
+            }
+          }
+        });
+    for (const Found& found : all) planes_[found.cell][found.entry] = found.plane;
+  }
+
+  /// Returns the mean of the planes of a material in cells of the ring, seen from a cell's centre.
+  [[nodiscard]] std::optional<CellPlane> continued_plane(Index c, std::uint16_t material,
+                                                         const std::vector<Index>& ring) const {
+    Vec3 normal;
+    double sum = 0, weights = 0;
+    for (const Index other : ring) {
+      if (planes_[other].empty()) continue;
+      const std::span<const Entry> there = std::as_const(values_).at(other);
+      const auto found = std::ranges::find(there, material, &Entry::material);
+      if (found == there.end()) continue;
+      const std::optional<CellPlane>& plane = planes_[other][static_cast<std::size_t>(found - there.begin())];
+      if (!plane) continue;
+      const Vec3 d = mesh_.cell_center(c) - mesh_.cell_center(other);
+      const double squared = squared_norm(d), w = 1 / (squared * squared);
+      sum += w * (plane->distance + dot(plane->normal, d));
+      normal += w * plane->normal;
+      weights += w;
+    }
+    if (!(weights > 0) || !std::isfinite(weights)) return {};
+    return CellPlane{normalized(normal), sum / weights};
   }
 
   /// Returns the distance of a cell's centre from the plane that cuts off this part of the cell on the side
@@ -308,31 +359,19 @@ class Start {
     const std::span<const Entry> own = std::as_const(values_).at(c);
     const auto place = static_cast<std::size_t>(&entry - own.data());
     if (is_mixed(entry)) {
-      if (!planes_[c].empty() && planes_[c][place]) return planes_[c][place]->distance;
+      if (planes_[c][place]) return planes_[c][place]->distance;
       return (static_cast<double>(entry.fraction) - 0.5) * size;
     }
-    // The distance is continued from the planes of the nearest mixed cells.
     const double side = entry.fraction > 0 ? 1 : -1;
+    if (const std::optional<CellPlane>& plane = planes_[c][place])
+      return side * std::max(side * plane->distance, inner_radius(c));
+    // Interfaces along faces of cells leave no mixed cell: they are halfway between centres.
     thread_local std::vector<Index> ring, wider;
     ring.assign(1, c);
-    for (int step = 0; step < 3; ++step) {
+    for (int layer = 0; layer < kLayers; ++layer) {
       subdivision_.find_ring(ring, wider);
       ring.swap(wider);
-      double sum = 0, weights = 0;
-      for (const Index other : ring) {
-        if (planes_[other].empty()) continue;
-        const std::span<const Entry> there = std::as_const(values_).at(other);
-        for (std::size_t e = 0; e < there.size(); ++e) {
-          if (there[e].material != entry.material || !planes_[other][e]) continue;
-          const Vec3 d = mesh_.cell_center(c) - mesh_.cell_center(other);
-          const double squared = squared_norm(d), w = 1 / (squared * squared);
-          sum += w * (planes_[other][e]->distance + dot(planes_[other][e]->normal, d));
-          weights += w;
-        }
-      }
-      if (weights > 0) return side * std::max(side * sum / weights, inner_radius(c));
     }
-    // Interfaces along faces of cells leave no mixed cell: they are halfway between centres.
     return side * nearest_other(c, entry, ring);
   }
 
