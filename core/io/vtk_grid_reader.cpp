@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
-#include <vtkDataSetReader.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
 #include <vtkImageReader2.h>
@@ -115,15 +114,7 @@ vtkSmartPointer<vtkDataObject> run_if_readable(const std::string& name, const ch
 GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
   GridFile file;
   file.kind = "legacy VTK";
-  const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
-  reader->ReadAllScalarsOn();
-  reader->ReadAllVectorsOn();
-  reader->ReadAllNormalsOn();
-  reader->ReadAllTensorsOn();
-  reader->ReadAllColorScalarsOn();
-  reader->ReadAllTCoordsOn();
-  reader->ReadAllFieldsOn();
-  add_data(name, run(*reader, name, messages), ArrayPlaces::kStated, file);
+  add_data(name, read_legacy_vtk(name, messages), ArrayPlaces::kStated, file);
   return file;
 }
 

@@ -8,7 +8,6 @@
 #include <vtkDataObjectTree.h>
 #include <vtkDataObjectTreeIterator.h>
 #include <vtkDataSet.h>
-#include <vtkDataSetReader.h>
 #include <vtkExodusIIReader.h>
 #include <vtkFieldData.h>
 #include <vtkHDFReader.h>
@@ -455,21 +454,6 @@ MeshFile read_xml(const std::string& name, const char* kind, const VtkMessages& 
   return collected(name, kind, reader->GetOutputDataObject(0));
 }
 
-MeshFile read_legacy(const std::string& name, const VtkMessages& messages) {
-  const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
-  reader->ReadAllScalarsOn();
-  reader->ReadAllVectorsOn();
-  reader->ReadAllNormalsOn();
-  reader->ReadAllTensorsOn();
-  reader->ReadAllColorScalarsOn();
-  reader->ReadAllTCoordsOn();
-  reader->ReadAllFieldsOn();
-  reader->SetFileName(name.c_str());
-  reader->Update();
-  messages.check(name);
-  return collected(name, "legacy VTK mesh", reader->GetOutputDataObject(0));
-}
-
 /// Updates a reader of files with several times to the last one; returns a remark on it.
 std::string update_to_last_time(vtkAlgorithm& reader) {
   reader.UpdateInformation();
@@ -557,7 +541,7 @@ MeshFile read_mesh_with_vtk(const std::filesystem::path& path) {
   } else if (extension == ".vtm") {
     file = read_xml<vtkXMLMultiBlockDataReader>(name, "VTK XML multiblock file", messages);
   } else if (extension == ".vtk") {
-    file = read_legacy(name, messages);
+    file = collected(name, "legacy VTK mesh", read_legacy_vtk(name, messages));
   } else if (extension == ".foam") {
     file = read_openfoam(name, messages);
   } else if (extension == ".vtkhdf") {

@@ -2,6 +2,7 @@
 
 #include <SMP/Common/vtkSMPToolsAPI.h>
 #include <vtkDataArray.h>
+#include <vtkDataSetReader.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
@@ -175,6 +176,22 @@ NamedArray from_vtk(vtkAbstractArray& source) {
     default:
       return converted(*data, std::move(array));
   }
+}
+
+vtkSmartPointer<vtkDataObject> read_legacy_vtk(const std::string& name, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllColorScalarsOn();
+  reader->ReadAllTCoordsOn();
+  reader->ReadAllFieldsOn();
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  messages.check(name);
+  if (reader->GetErrorCode() != 0) fail("{}: expected a whole file, found a corrupt one", name);
+  return reader->GetOutputDataObject(0);
 }
 
 void write_with_vtk(const std::filesystem::path& path, vtkXMLWriter& writer) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <vtkAbstractArray.h>
+#include <vtkDataObject.h>
 #include <vtkSmartPointer.h>
 
 #include <filesystem>
@@ -33,6 +34,10 @@ class VtkMessages {
 /// same bit for bit.
 vtkSmartPointer<vtkAbstractArray> to_vtk(const NamedArray& array);
 NamedArray from_vtk(vtkAbstractArray& array);
+
+/// Reads a legacy VTK file with all its arrays. Throws Error, named after the file, if it is not read in
+/// full.
+vtkSmartPointer<vtkDataObject> read_legacy_vtk(const std::string& name, const VtkMessages& messages);
 
 /// Runs a VTK XML writer whose input is set, binary and compressed, into an OutputFile. Throws Error if the
 /// file is not written in full.

@@ -51,7 +51,8 @@ class Input {
   [[nodiscard]] const Box3& domain() const;
   [[nodiscard]] const std::vector<std::string>& materials() const;
   [[nodiscard]] const std::vector<FieldDescription>& fields() const;
-  /// Returns the least spacing of the grid, or the size of a typical cell of a mesh; 0 where there is neither.
+  /// Returns the least spacing of the grid, or the size of a typical cell of a mesh; 0 where there is
+  /// neither.
   [[nodiscard]] double voxel() const;
   /// Returns whether interfaces are given, and not reconstructed.
   [[nodiscard]] bool has_given_interfaces() const;

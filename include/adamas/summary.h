@@ -46,8 +46,8 @@ struct MaterialDataSummary {
   std::vector<FieldFacts> fields;
 };
 
-/// Reads data of several materials on a grid or a mesh and summarises them. Notes tell of repairs of volume fractions
-/// beyond round-off. Throws Error as read_input() does.
+/// Reads data of several materials on a grid or a mesh and summarises them. Notes tell of repairs of volume
+/// fractions beyond round-off. Throws Error as read_input() does.
 MaterialDataSummary summarize_materials(const InputOptions& options,
                                         Progress& progress = SilentProgress::instance());
 

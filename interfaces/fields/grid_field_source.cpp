@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <unordered_map>
 
 #include "core/base/assert.h"
-#include "core/base/hash.h"
 #include "core/base/parallel.h"
+#include "interfaces/fields/fitted_values.h"
 #include "interfaces/fields/linear_fit.h"
 #include "interfaces/reconstruction/grid_sites.h"
 
@@ -35,16 +33,6 @@ constexpr std::size_t kChunk = 4096;
 
 }  // namespace
 
-/// A cache of fitted values. Values depend on the site alone, so the order of requests does not matter.
-struct GridFieldSource::Cache {
-  static constexpr std::size_t kShards = 64;
-  struct Shard {
-    std::mutex mutex;
-    std::unordered_map<std::uint64_t, std::vector<double>> rows;
-  };
-  std::array<Shard, kShards> shards;
-};
-
 struct GridFieldSource::Cell {
   Site low;
   std::array<double, 3> local;
@@ -54,7 +42,7 @@ struct GridFieldSource::Cell {
 GridFieldSource::~GridFieldSource() = default;
 
 GridFieldSource::GridFieldSource(const MultiMaterialData& data, const std::vector<MaterialId>& owners)
-    : data_(data), cache_(std::make_unique<Cache>()) {
+    : data_(data), cache_(std::make_unique<FittedValues>()) {
   for (int axis = 0; axis < 3; ++axis) {
     auto& x = coordinates_[static_cast<std::size_t>(axis)];
     const std::size_t n = data.grid.sites(axis);
@@ -157,17 +145,9 @@ void GridFieldSource::site_values(std::size_t field, MaterialId material, const 
   std::uint64_t key = material.value * fields_.size() + field;
   for (std::size_t a = 0; a < 3; ++a)
     key = key * static_cast<std::uint64_t>(sites(a) + 2) + static_cast<std::uint64_t>(site[a] + 1);
-  auto& shard = cache_->shards[fibonacci_slot(key, 6)];
-  {
-    const std::lock_guard lock(shard.mutex);
-    if (const auto found = shard.rows.find(key); found != shard.rows.end()) {
-      std::copy(found->second.begin(), found->second.end(), out.begin());
-      return;
-    }
-  }
-  fit(field, material, site, out);
-  const std::lock_guard lock(shard.mutex);
-  shard.rows.try_emplace(key, out.begin(), out.begin() + fields_[field].components);
+  const auto components = static_cast<std::size_t>(fields_[field].components);
+  cache_->find(key, out.subspan(0, components),
+               [&](std::span<double> found) { fit(field, material, site, found); });
 }
 
 /// Sites that state values, with their offsets from a place where none is stated.

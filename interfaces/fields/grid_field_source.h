@@ -10,6 +10,8 @@
 
 namespace adamas::interfaces {
 
+class FittedValues;
+
 /// Fields on the sites of a rectilinear grid. A material's field is trilinear between sites that state a
 /// value for the material: of a field per material if its fraction is no trace, of a mixed field if the site
 /// is nearly pure. Other sites get the weighted least-squares linear fit of the nearest ones that state a
@@ -40,7 +42,6 @@ class GridFieldSource final : public FieldSource {
   }
 
  private:
-  struct Cache;
   struct Cell;
   using Site = std::array<std::int32_t, 3>;
 
@@ -92,7 +93,7 @@ class GridFieldSource final : public FieldSource {
   /// by site: 1 if its values of mixed fields are those of its owner
   std::vector<std::uint8_t> mixed_stated_;
   std::vector<NativeElement> elements_;
-  std::unique_ptr<Cache> cache_;
+  std::unique_ptr<FittedValues> cache_;
 };
 
 }  // namespace adamas::interfaces

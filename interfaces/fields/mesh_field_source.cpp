@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <unordered_map>
 #include <utility>
 
-#include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
+#include "interfaces/fields/fitted_values.h"
 #include "interfaces/fields/linear_fit.h"
 
 namespace adamas::interfaces {
@@ -34,16 +32,6 @@ constexpr std::size_t kChunk = 1024;
 
 }  // namespace
 
-/// A cache of fitted values. Values depend on the point alone, so the order of requests does not matter.
-struct MeshFieldSource::Cache {
-  static constexpr std::size_t kShards = 64;
-  struct Shard {
-    std::mutex mutex;
-    std::unordered_map<std::uint64_t, std::vector<double>> rows;
-  };
-  std::array<Shard, kShards> shards;
-};
-
 /// Sites that state values, with their offsets from a place where none is stated.
 struct MeshFieldSource::Sample {
   Vec3 origin;
@@ -56,7 +44,7 @@ MeshFieldSource::~MeshFieldSource() = default;
 
 MeshFieldSource::MeshFieldSource(const MeshData& data,
                                  const std::function<MaterialId(const Vec3&)>& material_at)
-    : data_(data), subdivision_(data.mesh), cache_(std::make_unique<Cache>()) {
+    : data_(data), subdivision_(data.mesh), cache_(std::make_unique<FittedValues>()) {
   const PolyhedralMesh& mesh = data.mesh;
   std::vector<Box3> boxes(mesh.cell_count());
   Box3 centers;
@@ -275,25 +263,16 @@ void MeshFieldSource::point_values(std::size_t field, MaterialId material, Index
   }
   const std::uint64_t key =
       (std::uint64_t{point} * data_.materials.size() + material.value) * fields_.size() + field;
-  auto& shard = cache_->shards[fibonacci_slot(key, 6)];
-  {
-    const std::lock_guard lock(shard.mutex);
-    if (const auto found = shard.rows.find(key); found != shard.rows.end()) {
-      std::ranges::copy(found->second, out.begin());
-      return;
-    }
-  }
-  // The cell from which sites are collected must depend on the point alone.
-  const Index from = point >= first_center ? point - first_center
-                     : point >= points     ? mesh.cells_of_face(point - points)[0]
-                                           : mesh.cells_round(point)[0];
-  Sample sample{subdivision_.position(point)};
-  collect(field, material, from, 1, sample);
-  const double size = std::cbrt(std::abs(mesh.cell_volume(from)));
-  fit_linear_at_origin(sample.offsets, sample.values, components, kSoftAtSites * size,
-                       out.subspan(0, components));
-  const std::lock_guard lock(shard.mutex);
-  shard.rows.try_emplace(key, out.begin(), out.begin() + static_cast<std::ptrdiff_t>(components));
+  cache_->find(key, out.subspan(0, components), [&](std::span<double> found) {
+    // The cell from which sites are collected must depend on the point alone.
+    const Index from = point >= first_center ? point - first_center
+                       : point >= points     ? mesh.cells_of_face(point - points)[0]
+                                             : mesh.cells_round(point)[0];
+    Sample sample{subdivision_.position(point)};
+    collect(field, material, from, 1, sample);
+    const double size = std::cbrt(std::abs(mesh.cell_volume(from)));
+    fit_linear_at_origin(sample.offsets, sample.values, components, kSoftAtSites * size, found);
+  });
 }
 
 MeshFieldSource::Location MeshFieldSource::locate(const Vec3& p) const {

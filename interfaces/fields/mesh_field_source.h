@@ -13,6 +13,8 @@
 
 namespace adamas::interfaces {
 
+class FittedValues;
+
 /// Fields on the cells or the points of a mesh of polyhedra. A material's field is linear in the tetrahedra
 /// of the subdivision (MeshSubdivision): at cells or points that state a value for the material it has this
 /// value, at other ones, and at those to which the field does not belong, that of the linear function that
@@ -39,7 +41,6 @@ class MeshFieldSource final : public FieldSource {
 
  private:
   using Index = MeshSubdivision::Index;
-  struct Cache;
   struct Sample;
   /// The tetrahedron that holds a place, and the weights of its corners.
   struct Location {
@@ -76,7 +77,7 @@ class MeshFieldSource final : public FieldSource {
   std::array<bool, 3> extends_{};           ///< along which axes the cells' centres are at different places
   std::vector<std::vector<char>> stated_somewhere_;  ///< by field and material: whether it has any value
   std::vector<NativeElement> elements_;
-  std::unique_ptr<Cache> cache_;
+  std::unique_ptr<FittedValues> cache_;
 };
 
 }  // namespace adamas::interfaces

@@ -415,7 +415,9 @@ class Predictions {
     double value, fraction, own;
   };
 
-  [[nodiscard]] std::uint32_t index(const Entry& entry) const { return numbers_.number(values_.index(entry)); }
+  [[nodiscard]] std::uint32_t index(const Entry& entry) const {
+    return numbers_.number(values_.index(entry));
+  }
 
   const SiteValues& values_;
   GridSites sites_;

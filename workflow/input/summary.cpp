@@ -108,29 +108,25 @@ bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
   return format->read_header == nullptr || format->read_header(path).arrays.front().source.components == 1;
 }
 
-}  // namespace
-
-MaterialDataSummary summarize_materials(const InputOptions& options, Progress& progress) {
-  if (!options.path.empty() && input_kind(options.path) == InputKind::kCells) {
-    const MeshData data = workflow::load_mesh_data(options, progress);
-    MaterialDataSummary summary;
-    summary.materials = to_volumes(data.materials, data.volumes());
-    if (data.labels.empty()) summary.fraction_sums = {data.report.sum_min, data.report.sum_max};
-    for (const MeshField& field : data.fields) {
-      const auto [low, high] = range_of(field);
-      summary.fields.push_back({field.name, field.unit, field.components, field.per_material(), low, high});
-    }
-    return summary;
-  }
-  const MultiMaterialData data = workflow::load_data(options, progress);
+/// Summarises data on a grid or on a mesh.
+template <class Data>
+MaterialDataSummary summarize_data(const Data& data) {
   MaterialDataSummary summary;
   summary.materials = to_volumes(data.materials, data.volumes());
   if (data.labels.empty()) summary.fraction_sums = {data.report.sum_min, data.report.sum_max};
-  for (const Field& field : data.fields) {
+  for (const auto& field : data.fields) {
     const auto [low, high] = range_of(field);
     summary.fields.push_back({field.name, field.unit, field.components, field.per_material(), low, high});
   }
   return summary;
+}
+
+}  // namespace
+
+MaterialDataSummary summarize_materials(const InputOptions& options, Progress& progress) {
+  if (!options.path.empty() && input_kind(options.path) == InputKind::kCells)
+    return summarize_data(workflow::load_mesh_data(options, progress));
+  return summarize_data(workflow::load_data(options, progress));
 }
 
 std::optional<MeshSummary> summarize_mesh(const std::filesystem::path& path) {
