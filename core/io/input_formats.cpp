@@ -20,6 +20,7 @@
   FORMAT(nifti_format)               \
   FORMAT(hdf5_format)                \
   FORMAT(numpy_format)               \
+  FORMAT(mrc_format)                 \
   FORMAT(tiff_format)                \
   FORMAT(png_format)                 \
   FORMAT(vtk_picture_format)         \

@@ -1,7 +1,6 @@
 #include "core/io/nifti_header.h"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -12,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/io/decompression.h"
+#include "core/io/header_bytes.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 
@@ -64,14 +64,6 @@ struct Version2 {
   using Units = std::int32_t;
 };
 
-template <class T>
-T number(std::string_view text, std::size_t at, bool big_endian) {
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), text.data() + at, sizeof(T));
-  if (big_endian) std::reverse(bytes.begin(), bytes.end());
-  return std::bit_cast<T>(bytes);
-}
-
 template <class V>
 NiftiHeader parse_version(std::string_view text, bool big_endian, const std::string& name) {
   if (text.size() < V::kBytes) {
@@ -86,24 +78,26 @@ NiftiHeader parse_version(std::string_view text, bool big_endian, const std::str
   const auto read = [&]<class T>(T, std::size_t at, auto& values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = static_cast<std::remove_reference_t<decltype(values[0])>>(
-          number<T>(text, at + i * sizeof(T), big_endian));
+          number_at<T>(text, at + i * sizeof(T), big_endian));
     }
   };
   using Real = typename V::Real;
-  const auto real = [&](std::size_t at) { return static_cast<double>(number<Real>(text, at, big_endian)); };
+  const auto real = [&](std::size_t at) {
+    return static_cast<double>(number_at<Real>(text, at, big_endian));
+  };
   read(typename V::Size{}, V::kDim, header.dim);
   read(Real{}, V::kPixdim, header.pixdim);
   read(Real{}, V::kQuaternion, header.quaternion);
   read(Real{}, V::kQoffset, header.qoffset);
   for (std::size_t row = 0; row < 3; ++row) read(Real{}, V::kSrow + row * 4 * sizeof(Real), header.srow[row]);
-  header.datatype = number<std::int16_t>(text, V::kDatatype, big_endian);
-  header.bits = number<std::int16_t>(text, V::kBits, big_endian);
-  header.offset = static_cast<double>(number<typename V::Offset>(text, V::kOffset, big_endian));
+  header.datatype = number_at<std::int16_t>(text, V::kDatatype, big_endian);
+  header.bits = number_at<std::int16_t>(text, V::kBits, big_endian);
+  header.offset = static_cast<double>(number_at<typename V::Offset>(text, V::kOffset, big_endian));
   header.slope = real(V::kSlope);
   header.intercept = real(V::kIntercept);
-  header.qform_code = static_cast<int>(number<typename V::Code>(text, V::kQcode, big_endian));
-  header.sform_code = static_cast<int>(number<typename V::Code>(text, V::kScode, big_endian));
-  header.units = static_cast<int>(number<typename V::Units>(text, V::kUnits, big_endian));
+  header.qform_code = static_cast<int>(number_at<typename V::Code>(text, V::kQcode, big_endian));
+  header.sform_code = static_cast<int>(number_at<typename V::Code>(text, V::kScode, big_endian));
+  header.units = static_cast<int>(number_at<typename V::Units>(text, V::kUnits, big_endian));
   return header;
 }
 
@@ -174,7 +168,7 @@ NiftiHeader NiftiHeader::parse(std::string_view text, const std::string& name) {
   if (text.size() < sizeof(std::int32_t))
     fail("{}: expected a NIfTI header, found {} bytes", name, text.size());
   for (const bool big_endian : {false, true}) {
-    const auto size = number<std::int32_t>(text, 0, big_endian);
+    const auto size = number_at<std::int32_t>(text, 0, big_endian);
     if (size == Version1::kBytes) return parse_version<Version1>(text, big_endian, name);
     if (size == Version2::kBytes) return parse_version<Version2>(text, big_endian, name);
   }

@@ -12,6 +12,7 @@
 #include "core/io/grid_file.h"
 #include "core/io/labelled_network.h"
 #include "core/io/meta_image.h"
+#include "core/io/mrc_header.h"
 #include "core/io/network_ply.h"
 #include "core/io/nifti_header.h"
 #include "core/io/nrrd_header.h"
@@ -132,7 +133,8 @@ inline void meta_image(std::string_view bytes) {
 }
 
 inline void image(const ImageHeader& header) {
-  const VolumeSource source = volume_of(header, "", {});
+  const auto last = header.times > 1 ? std::optional(header.times - 1) : std::nullopt;
+  const VolumeSource source = volume_of(header, "", last);
   source.grid.check("fuzz");
   require(source.sample_file_bytes() >= source.grid.samples(), "more samples than bytes");
 }
@@ -156,6 +158,12 @@ inline void vti_volume(std::string_view bytes) {
 }
 
 inline void nifti_volume(std::string_view bytes) { image(nifti_image(bytes, "fuzz.nii")); }
+
+inline void mrc_volume(std::string_view bytes) {
+  const ImageHeader header = mrc_image(bytes, "fuzz.mrc");
+  image(header);
+  require(header.times >= 1 && header.arrays.at(0).source.header_bytes >= 1024, "samples in the header");
+}
 
 /// The bytes are a whole array of NumPy, or an archive of some, which is read as a grid.
 inline void numpy_array(std::string_view bytes) {

@@ -23,6 +23,7 @@ TEST(FuzzCorpus, MetaImageVolume) {
 }
 TEST(FuzzCorpus, VtiVolume) { EXPECT_EQ(fuzz::replay("vti_volume", fuzz::vti_volume), 2u); }
 TEST(FuzzCorpus, NiftiVolume) { EXPECT_EQ(fuzz::replay("nifti_volume", fuzz::nifti_volume), 5u); }
+TEST(FuzzCorpus, MrcVolume) { EXPECT_EQ(fuzz::replay("mrc_volume", fuzz::mrc_volume), 3u); }
 TEST(FuzzCorpus, NumpyArray) { EXPECT_EQ(fuzz::replay("numpy_array", fuzz::numpy_array), 4u); }
 TEST(FuzzCorpus, PackedVti) { EXPECT_EQ(fuzz::replay("packed_vti", fuzz::packed_vti), 5u); }
 TEST(FuzzCorpus, MesherReply) { EXPECT_EQ(fuzz::replay("mesher_reply", fuzz::mesher_reply), 2u); }
