@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/io/grid_numbers.h"
+#include "core/io/header_text.h"
 #include "core/io/mesh_builder.h"
 #include "core/io/mesh_file.h"
 
@@ -20,6 +21,9 @@ namespace adamas::io {
 namespace {
 
 using Index = std::uint32_t;
+
+/// The greatest number of characters of a name in a remark.
+constexpr std::size_t kShown = 40;
 
 /// Frees an object of Silo.
 template <auto kFree>
@@ -163,7 +167,22 @@ class SiloReader {
   Choice choose(DBfile* file) {
     DBtoc* const toc = DBGetToc(file);
     if (toc == nullptr) fail("{}: expected a table of contents, found none", name_);
+    add_objects_left_out(*toc);
     return toc->nmultimesh > 0 ? choose_blocks(file, *toc) : choose_single(file, *toc);
+  }
+
+  /// Names objects of kinds that are not read.
+  void add_objects_left_out(const DBtoc& toc) {
+    const auto add = [this](const char* kind, int count, char** names) {
+      std::vector<std::string> quoted;
+      for (int n = 0; n < count; ++n) quoted.push_back("'" + printable(text(names[n]), kShown) + "'");
+      if (count > 0) add_remark(fmt::format("{} not read: {}", kind, fmt::join(quoted, ", ")));
+    };
+    add("meshes of points", toc.nptmesh, toc.ptmesh_names);
+    add("meshes of solid geometry", toc.ncsgmesh, toc.csgmesh_names);
+    add("species of materials", toc.nmatspecies, toc.matspecies_names);
+    add("species of materials of blocks", toc.nmultimatspecies, toc.multimatspecies_names);
+    add("curves", toc.ncurve, toc.curve_names);
   }
 
   /// Finds the first multi-block mesh that is not one of points or of solid geometry.

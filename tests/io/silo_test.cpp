@@ -145,6 +145,19 @@ TEST(Silo, MixedZonesAndVariablesOfBothFormsOfFiles) {
   expect_blocks(read_mesh_data(scratch / "a.h5"), 1);
 }
 
+TEST(Silo, ObjectsOfOtherKindsAreNamed) {
+  const Scratch scratch;
+  DBfile* const file = create(scratch / "a.silo", DB_HDF5);
+  write_block(file, 0, false);
+  std::array<double, 2> x{1, 2}, y{3, 4}, z{5, 6};
+  std::array<void*, 3> places{x.data(), y.data(), z.data()};
+  DBPutPointmesh(file, "tracers", 3, places.data(), 2, DB_DOUBLE, nullptr);
+  DBPutCurve(file, "history", x.data(), y.data(), DB_DOUBLE, 2, nullptr);
+  DBClose(file);
+  EXPECT_EQ(read_mesh_file(scratch / "a.silo").remark,
+            "meshes of points not read: 'tracers'; curves not read: 'history'");
+}
+
 /// A mesh whose last index is the fastest has the same cells and values.
 TEST(Silo, OrdersOfArrays) {
   const Scratch scratch;
