@@ -410,6 +410,7 @@ std::vector<VolumeInputStep> steps_of(const Options& all) {
   }
   if (!steps.empty() || !all.input.grid_option().empty() || is_hierarchy_file(path)) return steps;
   check_readable(path);
+  if (input_kind(path) == InputKind::kCells) return steps;
   steps = find_volume_steps({path}, volume).steps;
   if (steps.size() == 1) steps.clear();
   return steps;
