@@ -22,6 +22,8 @@ struct MeshFile {
   std::vector<std::int32_t> block_of_cell;  ///< the block of each cell then; else empty
   std::vector<std::string> material_names;  ///< as in GridFile
   std::string remark;                       ///< what else the file holds and is not read; usually empty
+
+  void add_remark(const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; }
 };
 
 /// Whether a file has cells of a simulation although its ending may be of another kind, by its header: a

@@ -1,5 +1,7 @@
 #include "core/io/mrc_header.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -118,9 +120,8 @@ class Parser {
 
   /// Returns which axis of the cell each axis of the array follows: those of old files are not stated.
   [[nodiscard]] std::array<int, 3> axes_of_cell() const {
-    std::array<int, 3> axes{1, 2, 3};
     if (word(kAxes, 0) == 0 && word(kAxes, 1) == 0 && word(kAxes, 2) == 0) return {0, 1, 2};
-    for (std::size_t a = 0; a < 3; ++a) axes[a] = word(kAxes, a);
+    const std::array<int, 3> axes{word(kAxes, 0), word(kAxes, 1), word(kAxes, 2)};
     auto sorted = axes;
     std::ranges::sort(sorted);
     if (sorted != std::array{1, 2, 3})

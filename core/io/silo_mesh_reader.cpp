@@ -176,7 +176,7 @@ class SiloReader {
     const auto add = [this](const char* kind, int count, char** names) {
       std::vector<std::string> quoted;
       for (int n = 0; n < count; ++n) quoted.push_back("'" + printable(text(names[n]), kShown) + "'");
-      if (count > 0) add_remark(fmt::format("{} not read: {}", kind, fmt::join(quoted, ", ")));
+      if (count > 0) file_.add_remark(fmt::format("{} not read: {}", kind, fmt::join(quoted, ", ")));
     };
     add("meshes of points", toc.nptmesh, toc.ptmesh_names);
     add("meshes of solid geometry", toc.ncsgmesh, toc.csgmesh_names);
@@ -406,7 +406,7 @@ class SiloReader {
   void note_coordinates(int system) {
     if ((system == DB_CYLINDRICAL || system == DB_SPHERICAL) &&
         file_.remark.find("coordinates") == std::string::npos)
-      add_remark("its coordinates are not Cartesian, and are taken as if they were");
+      file_.add_remark("its coordinates are not Cartesian, and are taken as if they were");
   }
 
   Taken add_ucd_mesh(const DBucdmesh& mesh) {
@@ -754,8 +754,9 @@ class SiloReader {
   /// Turns what was collected of all blocks into arrays.
   void finish(const Choice& choice) {
     file_.kind = "Silo";
-    if (!choice.remark.empty()) add_remark(choice.remark);
-    if (left_out_ > 0) add_remark(fmt::format("{} zones of surfaces and lines are not read", left_out_));
+    if (!choice.remark.empty()) file_.add_remark(choice.remark);
+    if (left_out_ > 0)
+      file_.add_remark(fmt::format("{} zones of surfaces and lines are not read", left_out_));
     const std::size_t cells = file_.cell_ends.size();
     for (auto& [name, own] : fractions_) {
       own.resize(cells, 0);
@@ -767,12 +768,13 @@ class SiloReader {
       const std::size_t items = (variable.centering == Centering::kCells ? cells : file_.points.size()) *
                                 static_cast<std::size_t>(variable.components);
       if (!variable.complete || variable.values.size() > items) {
-        add_remark(fmt::format("variable '{}' is not read: not all blocks have it on zones or nodes", name));
+        file_.add_remark(
+            fmt::format("variable '{}' is not read: not all blocks have it on zones or nodes", name));
         continue;
       }
       if (variable.mixed_apart)
-        add_remark(fmt::format("the values of '{}' for mixed zones do not fit the materials and are not read",
-                               name));
+        file_.add_remark(fmt::format(
+            "the values of '{}' for mixed zones do not fit the materials and are not read", name));
       variable.values.resize(items, 0);
       if (variable.of_materials.empty()) {
         add_array(name + unit, variable.centering, variable.components, std::move(variable.values));
@@ -787,8 +789,6 @@ class SiloReader {
       }
     }
   }
-
-  void add_remark(const std::string& text) { file_.remark += (file_.remark.empty() ? "" : "; ") + text; }
 
   static constexpr std::size_t kMostNodes = std::numeric_limits<Index>::max() - 1;
 

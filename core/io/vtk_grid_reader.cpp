@@ -94,23 +94,6 @@ void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, 
   if (image != nullptr) lay_out(axes_of(*image), file);
 }
 
-template <class Reader>
-vtkSmartPointer<vtkDataObject> run(Reader& reader, const std::string& name, const VtkMessages& messages) {
-  reader.SetFileName(name.c_str());
-  reader.Update();
-  messages.check(name);
-  if (reader.GetErrorCode() != 0) fail("{}: expected a whole file, found a corrupt one", name);
-  return reader.GetOutputDataObject(0);
-}
-
-template <class Reader>
-vtkSmartPointer<vtkDataObject> run_if_readable(const std::string& name, const char* kind,
-                                               const VtkMessages& messages) {
-  const auto reader = vtkSmartPointer<Reader>::New();
-  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected {}, found something else", name, kind);
-  return run(*reader, name, messages);
-}
-
 GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
   GridFile file;
   file.kind = "legacy VTK";
@@ -135,7 +118,7 @@ GridFile read_image(const std::filesystem::path& path, const std::string& extens
   if (reader == nullptr || !lists_extension(reader->GetFileExtensions(), extension))
     fail("{}: expected a grid or image format that is known, found none", name);
   file.kind = reader->GetDescriptiveName();
-  add_data(name, run(*reader, name, messages), ArrayPlaces::kSamples, file);
+  add_data(name, read_with_vtk(*reader, name, messages), ArrayPlaces::kSamples, file);
   if (file.arrays.size() == 1) file.arrays[0].name = file_stem(path);
   return file;
 }
@@ -148,11 +131,12 @@ GridFile read_grid_with_vtk(const std::filesystem::path& path) {
   GridFile file;
   if (extension == ".vti") {
     file.kind = "VTK XML image";
-    add_data(name, run_if_readable<vtkXMLImageDataReader>(name, "VTK XML image data", messages),
+    add_data(name, read_if_readable<vtkXMLImageDataReader>(name, "VTK XML image data", messages),
              ArrayPlaces::kStated, file);
   } else if (extension == ".vtr") {
     file.kind = "VTK XML rectilinear grid";
-    add_data(name, run_if_readable<vtkXMLRectilinearGridReader>(name, "a VTK XML rectilinear grid", messages),
+    add_data(name,
+             read_if_readable<vtkXMLRectilinearGridReader>(name, "a VTK XML rectilinear grid", messages),
              ArrayPlaces::kStated, file);
   } else if (extension == ".vtk") {
     file = read_legacy(name, messages);

@@ -288,50 +288,62 @@ class CellCollector {
     append_face(face, file_);
   }
 
+  /// Finds the points of a cell, of which it must have as many as corners. Returns how many there are.
+  std::size_t find_points(vtkDataSet& set, vtkIdType cell, std::size_t corners) {
+    set.GetCellPoints(cell, ids_);
+    const auto found = static_cast<std::size_t>(ids_->GetNumberOfIds());
+    if (found < corners)
+      fail("{}: expected a cell of {} points, found {} of cell {}", name_, corners, found, cell);
+    return found;
+  }
+
+  void add_polygon(vtkDataSet& set, vtkIdType cell, const std::vector<Index>& numbers) {
+    const int type = set.GetCellType(cell), corners = polygon_corners(type);
+    const std::size_t found = find_points(set, cell, static_cast<std::size_t>(std::max(corners, 0)));
+    const std::size_t count = corners < 0 ? found : static_cast<std::size_t>(corners);
+    std::vector<vtkIdType> face(ids_->GetPointer(0), ids_->GetPointer(0) + count);
+    if (type == VTK_PIXEL) std::swap(face[2], face[3]);
+    higher_degree_ = higher_degree_ || found > count;
+    add_face(numbers, face);
+  }
+
+  void add_polyhedron(vtkUnstructuredGrid& set, vtkIdType cell, const std::vector<Index>& numbers) {
+    set.GetFaceStream(cell, ids_);
+    vtkIdType at = 0;
+    const auto next = [&] { return at < ids_->GetNumberOfIds() ? ids_->GetId(at++) : -1; };
+    for (vtkIdType faces = next(); faces > 0; --faces) {
+      const vtkIdType size = next();
+      if (size < 0 || size > ids_->GetNumberOfIds() - at)
+        fail("{}: expected a polyhedron with its faces, found cell {}", name_, cell);
+      add_face(numbers, {ids_->GetPointer(at), static_cast<std::size_t>(size)});
+      at += size;
+    }
+  }
+
+  void add_common_cell(vtkDataSet& set, vtkIdType cell, const std::vector<Index>& numbers) {
+    const CellShape shape = shape_of(set.GetCellType(cell));
+    find_points(set, cell, shape.corners);
+    higher_degree_ = higher_degree_ || shape.higher_degree;
+    std::vector<vtkIdType> face;
+    for (const auto& places : *shape.faces) {
+      face.clear();
+      for (const std::size_t place : places) face.push_back(ids_->GetId(static_cast<vtkIdType>(place)));
+      add_face(numbers, face);
+    }
+  }
+
   void add_cells() {
-    const auto ids = vtkSmartPointer<vtkIdList>::New();
-    std::vector<vtkIdType> face, kept;
+    std::vector<vtkIdType> kept;
     for (std::size_t n = 0; n < pieces_.size(); ++n) {
       vtkDataSet& set = *pieces_[n].set;
-      auto* unstructured = vtkUnstructuredGrid::SafeDownCast(&set);
       kept.clear();
       for (const vtkIdType c : pieces_[n].cells) {
-        const int type = set.GetCellType(c);
         if (file_.flat) {
-          set.GetCellPoints(c, ids);
-          const int corners = polygon_corners(type);
-          const vtkIdType count = corners < 0 ? ids->GetNumberOfIds() : corners;
-          if (ids->GetNumberOfIds() < count)
-            fail("{}: expected a cell of {} points, found {} of cell {}", name_, count, ids->GetNumberOfIds(),
-                 c);
-          face.assign(ids->GetPointer(0), ids->GetPointer(0) + count);
-          if (type == VTK_PIXEL) std::swap(face[2], face[3]);
-          higher_degree_ = higher_degree_ || (corners > 0 && ids->GetNumberOfIds() > count);
-          add_face(numbers_[n], face);
-        } else if (type == VTK_POLYHEDRON) {
-          unstructured->GetFaceStream(c, ids);
-          vtkIdType at = 0;
-          const auto next = [&] { return at < ids->GetNumberOfIds() ? ids->GetId(at++) : -1; };
-          for (vtkIdType faces = next(); faces > 0; --faces) {
-            const vtkIdType size = next();
-            if (size < 0 || size > ids->GetNumberOfIds() - at)
-              fail("{}: expected a polyhedron with its faces, found cell {}", name_, c);
-            face.assign(ids->GetPointer(at), ids->GetPointer(at) + size);
-            at += size;
-            add_face(numbers_[n], face);
-          }
+          add_polygon(set, c, numbers_[n]);
+        } else if (set.GetCellType(c) == VTK_POLYHEDRON) {
+          add_polyhedron(*vtkUnstructuredGrid::SafeDownCast(&set), c, numbers_[n]);
         } else {
-          const CellShape shape = shape_of(type);
-          set.GetCellPoints(c, ids);
-          if (ids->GetNumberOfIds() < static_cast<vtkIdType>(shape.corners))
-            fail("{}: expected a cell of {} points, found {} of cell {}", name_, shape.corners,
-                 ids->GetNumberOfIds(), c);
-          higher_degree_ = higher_degree_ || shape.higher_degree;
-          for (const auto& places : *shape.faces) {
-            face.clear();
-            for (const std::size_t place : places) face.push_back(ids->GetId(static_cast<vtkIdType>(place)));
-            add_face(numbers_[n], face);
-          }
+          add_common_cell(set, c, numbers_[n]);
         }
         if (end_cell(file_)) kept.push_back(c);
       }
@@ -339,13 +351,13 @@ class CellCollector {
       pieces_[n].cells = kept;
     }
     std::erase_if(pieces_, [](const Piece& piece) { return piece.cells.empty() && piece.points.empty(); });
-    if (collapsed_ > 0) add_remark(fmt::format("{} cells that have collapsed are left out", collapsed_));
-    if (hidden_ > 0) add_remark(fmt::format("{} cells that are hidden or refined are left out", hidden_));
-    if (higher_degree_) add_remark("cells of higher degree are taken by their corners");
-    if (flat_ > 0) add_remark(fmt::format("{} cells of surfaces and lines are not read", flat_));
+    if (collapsed_ > 0)
+      file_.add_remark(fmt::format("{} cells that have collapsed are left out", collapsed_));
+    if (hidden_ > 0)
+      file_.add_remark(fmt::format("{} cells that are hidden or refined are left out", hidden_));
+    if (higher_degree_) file_.add_remark("cells of higher degree are taken by their corners");
+    if (flat_ > 0) file_.add_remark(fmt::format("{} cells of surfaces and lines are not read", flat_));
   }
-
-  void add_remark(const std::string& text) { file_.remark += (file_.remark.empty() ? "" : "; ") + text; }
 
   static vtkDataSetAttributes& attributes(vtkDataSet& set, Centering centering) {
     if (centering == Centering::kCells) return *set.GetCellData();
@@ -365,14 +377,15 @@ class CellCollector {
       }
       for (const std::string& name : names) {
         if (!add_array(name, centering))
-          add_remark(
+          file_.add_remark(
               fmt::format("array '{}' is not read: not all blocks have it as numbers of one type", name));
       }
     }
     const bool on_points = std::ranges::any_of(
         file_.arrays, [](const GridArray& array) { return array.centering == Centering::kPoints; });
     if (merged_ > 0 && on_points)
-      add_remark(fmt::format("{} points at the places of others are left out with their values", merged_));
+      file_.add_remark(
+          fmt::format("{} points at the places of others are left out with their values", merged_));
     auto* names =
         vtkStringArray::SafeDownCast(pieces_[0].set->GetFieldData()->GetAbstractArray("material_names"));
     for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i)
@@ -426,7 +439,8 @@ class CellCollector {
 
   std::string name_;
   std::vector<Piece> pieces_;
-  std::vector<std::vector<Index>> numbers_;  // of the points of each piece
+  std::vector<std::vector<Index>> numbers_;                             // of the points of each piece
+  vtkSmartPointer<vtkIdList> ids_ = vtkSmartPointer<vtkIdList>::New();  // of the points of one cell
   std::size_t flat_ = 0, hidden_ = 0, collapsed_ = 0, merged_ = 0;
   bool higher_degree_ = false;
   MeshFile file_;
@@ -439,19 +453,17 @@ MeshFile collected(const std::string& name, const char* kind, vtkDataObject* dat
   collector.add(data);
   MeshFile file = collector.run();
   file.kind = kind;
-  if (!remark.empty()) file.remark = remark + (file.remark.empty() ? "" : "; " + file.remark);
+  if (!remark.empty()) {
+    const std::string of_cells = std::exchange(file.remark, remark);
+    if (!of_cells.empty()) file.add_remark(of_cells);
+  }
   return file;
 }
 
 template <class Reader>
 MeshFile read_xml(const std::string& name, const char* kind, const VtkMessages& messages) {
-  const auto reader = vtkSmartPointer<Reader>::New();
-  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected a {}, found something else", name, kind);
-  reader->SetFileName(name.c_str());
-  reader->Update();
-  messages.check(name);
-  if (reader->GetErrorCode() != 0) fail("{}: expected a whole file, found a corrupt one", name);
-  return collected(name, kind, reader->GetOutputDataObject(0));
+  const auto data = read_if_readable<Reader>(name, fmt::format("a {}", kind), messages);
+  return collected(name, kind, data);
 }
 
 /// Updates a reader of files with several times to the last one; returns a remark on it.
@@ -502,15 +514,6 @@ MeshFile read_exodus(const std::string& name, const VtkMessages& messages) {
   return collected(name, "ExodusII", reader->GetOutputDataObject(0), remark);
 }
 
-MeshFile read_vtkhdf(const std::string& name, const VtkMessages& messages) {
-  const auto reader = vtkSmartPointer<vtkHDFReader>::New();
-  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected VTKHDF, found something else", name);
-  reader->SetFileName(name.c_str());
-  reader->Update();
-  messages.check(name);
-  return collected(name, "VTKHDF", reader->GetOutputDataObject(0));
-}
-
 MeshFile read_cgns(const std::string& name, const VtkMessages& messages) {
   const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
   reader->SetFileName(name.c_str());
@@ -545,7 +548,7 @@ MeshFile read_mesh_with_vtk(const std::filesystem::path& path) {
   } else if (extension == ".foam") {
     file = read_openfoam(name, messages);
   } else if (extension == ".vtkhdf") {
-    file = read_vtkhdf(name, messages);
+    file = collected(name, "VTKHDF", read_if_readable<vtkHDFReader>(name, "VTKHDF", messages));
   } else if (extension == ".cgns") {
     file = read_cgns(name, messages);
   } else {

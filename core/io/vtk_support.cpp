@@ -187,11 +187,7 @@ vtkSmartPointer<vtkDataObject> read_legacy_vtk(const std::string& name, const Vt
   reader->ReadAllColorScalarsOn();
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
-  reader->SetFileName(name.c_str());
-  reader->Update();
-  messages.check(name);
-  if (reader->GetErrorCode() != 0) fail("{}: expected a whole file, found a corrupt one", name);
-  return reader->GetOutputDataObject(0);
+  return read_with_vtk(*reader, name, messages);
 }
 
 void write_with_vtk(const std::filesystem::path& path, vtkXMLWriter& writer) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/data/unstructured_mesh.h"
 
 class vtkXMLWriter;
@@ -34,6 +35,27 @@ class VtkMessages {
 /// same bit for bit.
 vtkSmartPointer<vtkAbstractArray> to_vtk(const NamedArray& array);
 NamedArray from_vtk(vtkAbstractArray& array);
+
+/// Reads a file with a reader of VTK. Throws Error, named after the file, if it is not read in full.
+template <class Reader>
+vtkSmartPointer<vtkDataObject> read_with_vtk(Reader& reader, const std::string& name,
+                                             const VtkMessages& messages) {
+  reader.SetFileName(name.c_str());
+  reader.Update();
+  messages.check(name);
+  if (reader.GetErrorCode() != 0) fail("{}: expected a whole file, found a corrupt one", name);
+  return reader.GetOutputDataObject(0);
+}
+
+/// Reads a file with a reader of this class, which has to know it as its own. `kind`: the format, for
+/// messages.
+template <class Reader>
+vtkSmartPointer<vtkDataObject> read_if_readable(const std::string& name, const std::string& kind,
+                                                const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<Reader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected {}, found something else", name, kind);
+  return read_with_vtk(*reader, name, messages);
+}
 
 /// Reads a legacy VTK file with all its arrays. Throws Error, named after the file, if it is not read in
 /// full.
