@@ -388,10 +388,15 @@ Figures print_one(const Options& all, Session& session) {
   // Unless an option says otherwise, labels and fractions belong to cells.
   const FileSummary summary = summarize_file(
       path, options.data.centering, names_materials(options) ? Centering::kCells : Centering::kPoints,
-      raw_volume(options.raw));
+      raw_volume(options.raw), options.data.time);
   Figures figures{{"file", path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", path, summary.kind);
   print_grid(summary, session.console, figures);
+  if (const std::vector<double> times = mesh_times(path); times.size() > 1) {
+    session.console.print("  {}; this is number {} (--time)\n", times_text(times),
+                          options.data.time.value_or(times.size() - 1));
+    figures["times"] = times;
+  }
   print_details(summary, options, session.console, figures);
   if (!summary.remark.empty() && !has_data(summary, options))
     session.console.note("{}: {}", path, summary.remark);
@@ -435,6 +440,9 @@ Figures print_series(const Options& all, const std::vector<VolumeInputStep>& ste
 void run(const Options& given, Session& session) {
   Options all{needed_main_file(given.input, "a FILE"), given.volume};
   share_raw_options(all.input, all.volume);
+  if (!all.volume.stack && !is_store(all.input.path) && !all.input.path.empty() &&
+      std::filesystem::is_regular_file(all.input.path) && input_kind(all.input.path) == InputKind::kCells)
+    all.input.data.time = std::exchange(all.volume.time, {});
   session.outputs.protect(all.input.path);
   const std::vector<VolumeInputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);

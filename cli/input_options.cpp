@@ -85,6 +85,9 @@ void add_material_options(const Command& command, InputOptions& options, const s
       .one_value_each();
   input.add_value("--extrude", "H", "Of a mesh of two dimensions: the height of the cells made of it",
                   data.extrude, parse_positive);
+  input.add_flag("--axisymmetric",
+                 "Of a mesh of two dimensions: it is turned round the axis of y; x is the distance from it",
+                 data.axisymmetric);
   input.add_flag(
       "--cells",
       "The values are of cells, whatever the file says (default, where it says nothing, for labels "
@@ -146,7 +149,15 @@ void add_interface_options(const Command& command, InputOptions& options) {
 void add_input_options(const Command& command, InputOptions& options, bool& smooth_labels,
                        FractionOptions& fractions) {
   add_material_options(command, options);
-  add_raw_options(command, options.raw, "--origin,--first-sample", "a raw file");
+  command.in_group("Input").add_flag(
+      "--stack", "INPUT is a pattern of pictures, one plane in each, as \"labels_*.tif\" (in quotes)",
+      options.stack);
+  command.in_group("Input").add_value(
+      "--time", "N",
+      "Of a file of cells with several times (OpenFOAM, ExodusII, CGNS): the number of one, from 0 on "
+      "(default: the last one)",
+      options.data.time, parse_count_from_0);
+  add_raw_options(command, options.raw, "--origin,--first-sample", "a raw file or a stack");
   add_reconstruction_options(command, smooth_labels, fractions);
   add_interface_options(command, options);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "adamas/file_names.h"
 #include "adamas/mesh_files.h"
 #include "adamas/picture.h"
 #include "adamas/probe.h"
@@ -302,10 +303,17 @@ AdaptiveMesh resample_input(const Options& options, Console& console) {
 
 void run(Options& options, Session& session) {
   options.input.memory = begin_memory_limit(options.memory, session);
-  const std::vector<SeriesEntry> steps = series_steps(options.inputs);
+  std::vector<SeriesEntry> steps;
+  if (!options.input.stack) steps = series_steps(options.inputs);
+  // A file of cells with several times is a series where one is asked for.
+  const bool as_series = !series_option(options).empty() || file_extension(options.outputs.mesh) == ".pvd";
+  if (steps.empty() && as_series && options.inputs.size() == 1 && !options.input.stack &&
+      !options.input.data.time)
+    steps = mesh_steps(options.inputs.front());
   if (!steps.empty()) return run_series(options, steps, session);
   if (const std::string option = series_option(options); !option.empty())
-    wrong_usage("{}: expected a series (a .pvd or several files)", option);
+    wrong_usage("{}: expected a series (a .pvd, several files, or a file of cells with several times)",
+                option);
   if (!options.inputs.empty()) options.input.path = options.inputs.front();
   Console& console = session.console;
   check_simplification(options.simplify);

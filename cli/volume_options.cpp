@@ -55,10 +55,12 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
                  input.stack);
   group.add_option("--array", "NAME", "Which array or data set of a file with several", input.array);
   add_raw_options(command, input.raw, origin, "a raw file or a stack");
-  group.add_value("--time", "N",
-                  "Of a file with several times (NIfTI, HDF5 or .npy along four axes, a stack of MRC): the "
-                  "number of one, from 0 on",
-                  input.time, parse_count_from_0);
+  group.add_value(
+      "--time", "N",
+      "Of a file with several times (NIfTI, HDF5 or .npy along four axes, a stack of MRC; cells of "
+      "OpenFOAM, ExodusII or CGNS): the "
+      "number of one, from 0 on",
+      input.time, parse_count_from_0);
   command.add_file("--scratch", "FOLDER",
                    "Folder for scratch data, up to four times the volume's samples (default: that of the "
                    "system, $TMPDIR or /tmp)",

@@ -91,8 +91,8 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   return summary;
 }
 
-FileSummary summarize_cells(const std::filesystem::path& path) {
-  MeshFile file = read_mesh_file(path);
+FileSummary summarize_cells(const std::filesystem::path& path, std::optional<std::uint64_t> time) {
+  MeshFile file = read_mesh_file(path, time);
   FileSummary summary;
   summary.kind = file.kind;
   set_points(file.points, summary);
@@ -132,21 +132,22 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 void check_readable(const std::filesystem::path& path) { check_input_file(path); }
 
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted,
-                           Centering otherwise, const std::optional<RawVolume>& raw) {
+                           Centering otherwise, const std::optional<RawVolume>& raw,
+                           std::optional<std::uint64_t> time) {
   FileSummary summary;
   switch (kind_by_format(path)) {
     case InputKind::kMesh:
     case InputKind::kPolygons:
       return summarize_mesh(path);
     case InputKind::kCells:
-      if (file_extension(path) != ".vtu") return summarize_cells(path);
+      if (file_extension(path) != ".vtu") return summarize_cells(path, time);
       try {
         return summarize_mesh(path);
       } catch (const Cancelled&) {
         throw;
       } catch (const Error&) {
         // It may have other cells than tetrahedra; other faults are found again.
-        return summarize_cells(path);
+        return summarize_cells(path, time);
       }
     case InputKind::kNetwork: {
       const InterfaceMesh mesh = read_interface_mesh(path);

@@ -104,19 +104,26 @@ struct GridReading {
   const RawVolume* raw = nullptr;  ///< what a file is whose extension belongs to no format
   /// The name of an array that labels are taken from, whose numbers are read as runs if they are whole.
   std::string labels = {};
-  bool only_array = false;  ///< whether it may have any name in a file of one array
+  bool only_array = false;      ///< whether it may have any name in a file of one array
+  Vec3 stack_spacing{1, 1, 1};  ///< of a pattern of pictures
+  Vec3 stack_origin{};
 };
 
 /// Reads a grid or image of any format that gives one (input_formats.h). If the format has no names of
 /// arrays, the array gets the file's name. NIfTI values are scaled as their header says; axes that are
 /// parallel to x, y and z are permuted and reversed so that positions are right (lay_out). Throws Error, with
-/// the file's name, if the file is not complete or not of its kind.
+/// the file's name, if the file is not complete or not of its kind. A path may be a pattern of pictures, one
+/// plane in each.
 GridFile read_grid_file(const std::filesystem::path& path, const GridReading& reading = {});
 
-/// Reads a file by the library for its extension: .vti, .vtr, legacy .vtk, .tif(f) and the pictures of VTK.
-/// The library may crash on a corrupt file, so it runs in a child process (read_in_child).
+/// Reads a file by the library for its format: .vti, .vtr, legacy .vtk, .tif(f), DICOM and the pictures of
+/// VTK. The library may crash on a corrupt file, so it runs in a child process (read_in_child).
 GridFile read_grid_by_library(const std::filesystem::path& path);
-/// Reads a file as read_grid_by_library does, but in this process.
+/// Reads a file as read_grid_by_library does, but in this process. `series`: as for read_dicom().
+GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series = {});
+/// Reads pictures of one size in this process, one plane in each: the first at z = 0, rows as stored.
+GridFile read_picture_stack(const std::vector<std::string>& paths);
+/// Reads a file of VTK, TIFF or a picture in this process.
 GridFile read_grid_with_vtk(const std::filesystem::path& path);
 
 /// Reads all numeric data sets of HDF5, in a child process: those with three axes, z slowest, and those with

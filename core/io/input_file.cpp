@@ -9,18 +9,26 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/io/dicom_reader.h"
+#include "core/io/volume_stack.h"
 
 namespace adamas::io {
 
 std::size_t check_input_file(const std::filesystem::path& path) {
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
+  if (is_file_pattern(path)) {
+    std::size_t sum = 0;
+    for (const auto& file : match_stack(path)) sum += check_input_file(file);
+    return sum;
+  }
   if (status.type() == std::filesystem::file_type::not_found) {
     fail("{}: expected a file, found none", path.string());
   }
   if (code) fail("{}: expected a readable file: {}", path.string(), code.message());
   if (status.type() == std::filesystem::file_type::directory) {
-    fail("{}: expected a file, found a folder", path.string());
+    if (is_dicom_folder(path)) return static_cast<std::size_t>(size_of_folder(path));
+    fail("{}: expected a file, found a folder without any of DICOM", path.string());
   }
   if (status.type() != std::filesystem::file_type::regular) {
     fail("{}: expected a file, found something else", path.string());
@@ -33,6 +41,11 @@ std::size_t check_input_file(const std::filesystem::path& path) {
   if (file_extension(path) == ".foam") return static_cast<std::size_t>(size_of_folder(path.parent_path()));
   if (size == 0) fail("{}: expected data, found an empty file", path.string());
   return static_cast<std::size_t>(size);
+}
+
+bool is_file_pattern(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return path.string().find_first_of("*?#%") != std::string::npos && !std::filesystem::exists(path, unknown);
 }
 
 std::uintmax_t size_of_folder(const std::filesystem::path& folder) {

@@ -13,6 +13,8 @@ namespace adamas::io {
 std::size_t check_input_file(const std::filesystem::path& path);
 /// The bytes of all files in a folder and below it.
 std::uintmax_t size_of_folder(const std::filesystem::path& folder);
+/// Whether a path that no file has is a pattern of names (match_stack).
+bool is_file_pattern(const std::filesystem::path& path);
 
 /// The whole content of a checked input file.
 std::string read_file(const std::filesystem::path& path);

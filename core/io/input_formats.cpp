@@ -14,6 +14,7 @@
 #define ADAMAS_INPUT_FORMATS(FORMAT) \
   FORMAT(vti_format)                 \
   FORMAT(vtr_format)                 \
+  FORMAT(vtk_pieces_format)          \
   FORMAT(legacy_vtk_format)          \
   FORMAT(nrrd_format)                \
   FORMAT(meta_image_format)          \
@@ -21,6 +22,7 @@
   FORMAT(hdf5_format)                \
   FORMAT(numpy_format)               \
   FORMAT(mrc_format)                 \
+  FORMAT(dicom_format)               \
   FORMAT(tiff_format)                \
   FORMAT(png_format)                 \
   FORMAT(vtk_picture_format)         \
@@ -82,6 +84,9 @@ std::span<const InputFormat> input_formats() {
 const InputFormat* find_format_by_name(const std::filesystem::path& path) {
   const std::string ending = file_extension(path);
   const auto formats = input_formats();
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    return &*std::ranges::find(formats, true, &InputFormat::of_folders);
   const auto found = std::find_if(formats.begin(), formats.end(),
                                   [&](const InputFormat& format) { return format.has_ending(ending); });
   return found == formats.end() ? nullptr : &*found;

@@ -19,7 +19,7 @@ class Reader {
 
   MeshData run() {
     progress_.step("read " + path_.filename().string(), 0);
-    file_ = read_mesh_file(path_);
+    file_ = read_mesh_file(path_, options_.time);
     data_.source = path_.string();
     refuse_options();
     extrude_if_flat(data_.source, file_);
@@ -59,15 +59,19 @@ class Reader {
   }
 
   void extrude_if_flat(const std::string& name, MeshFile& file) const {
-    if (file.flat && !options_.extrude)
+    if (options_.extrude && options_.axisymmetric)
+      fail("{}: --extrude and --axisymmetric: expected one of them", name);
+    if (!file.flat && (options_.extrude || options_.axisymmetric))
+      fail("{}: {}: expected cells of two dimensions, found cells with a volume", name,
+           options_.extrude ? "--extrude" : "--axisymmetric");
+    if (!file.flat) return;
+    if (!options_.extrude && !options_.axisymmetric)
       fail(
           "{}: expected cells with a volume, found those of two dimensions: pass --extrude H for cells of "
           "this "
-          "height",
+          "height, or --axisymmetric for rings round the axis of y",
           name);
-    if (!file.flat && options_.extrude)
-      fail("{}: --extrude: expected cells of two dimensions, found cells with a volume", name);
-    if (file.flat) extrude(file, *options_.extrude);
+    options_.axisymmetric ? revolve(name, file) : extrude(file, *options_.extrude);
   }
 
   /// Takes the blocks for materials if nothing else says what these are.
@@ -91,7 +95,7 @@ class Reader {
   /// Reads the one array of another file, which has to be on the same mesh.
   GridArray read_other(const std::string& option, const std::filesystem::path& file) {
     progress_.step("read " + file.filename().string(), 0.5);
-    MeshFile other = read_mesh_file(file);
+    MeshFile other = read_mesh_file(file, options_.time);
     extrude_if_flat(file.string(), other);
     const std::vector<Vec3>& points = data_.mesh.points();
     if (other.cell_ends.size() != data_.mesh.cell_count() || other.points.size() != points.size())

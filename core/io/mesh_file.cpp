@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <span>
 #include <string_view>
 
+#include "adamas/series.h"
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/data/unstructured_mesh.h"
@@ -55,8 +58,8 @@ void check_sent(const std::string& name, const MeshFile& file) {
 InputFormat cells_format() {
   return {.name = "cells of a mesh",
           .kind = InputKind::kCells,
-          .endings = ".vts .pvtu .pvts .vtm .vtkhdf .foam .exo .cgns .silo .pdb",
-          .more_endings = ".e .ex2 .exii .g .gen"};
+          .endings = ".vts .pvtu .pvts .vtm .vth .vtkhdf .foam .exo .cgns .silo .pdb",
+          .more_endings = ".vthb .e .ex2 .exii .g .gen"};
 }
 
 namespace {
@@ -107,18 +110,29 @@ bool is_mesh_by_header(const std::filesystem::path& path) {
 
 void send_cells(const ReaderRequest& request, ByteSink& sink) {
   const std::filesystem::path path = request.paths.front();
-  sink.put(is_silo(path) ? read_silo_mesh(path) : read_mesh_with_vtk(path));
+  if (request.reader == LibraryReader::kCellTimes) {
+    sink.put(mesh_times_with_vtk(path));
+  } else {
+    sink.put(is_silo(path) ? read_silo_mesh(path) : read_mesh_with_vtk(path, request.time));
+  }
 }
 
-MeshFile read_mesh_file(const std::filesystem::path& path) {
+}  // namespace adamas::io
+
+std::vector<double> adamas::mesh_times(const std::filesystem::path& path) {
+  using namespace io;
+  check_input_file(path);
+  if (kind_by_format(path) != InputKind::kCells) return {};
+  return receive_from_child<std::vector<double>>(request_of(LibraryReader::kCellTimes, path));
+}
+
+namespace adamas::io {
+
+MeshFile read_mesh_file(const std::filesystem::path& path, std::optional<std::uint64_t> time) {
   ReaderRequest request = request_of(LibraryReader::kCells, path);
   if (file_extension(path) == ".vtu")
     check_vtk_counts(read_xml_tags(supply_file(FileHandle::open(path), 0), path.string()), path);
-  // Such a file stands for others beside it.
-  const std::string extension = file_extension(path);
-  for (const char* whole : {".pvtu", ".pvts", ".vtm", ".silo", ".pdb"}) {
-    if (extension == whole) request.input_bytes = size_of_folder(path.parent_path());
-  }
+  request.time = time;
   MeshFile file = receive_from_child<MeshFile>(request);
   check_sent(path.string(), file);
   show_names(file.arrays, file.material_names);
@@ -126,32 +140,97 @@ MeshFile read_mesh_file(const std::filesystem::path& path) {
   return file;
 }
 
-void extrude(MeshFile& file, double height) {
-  const auto count = static_cast<std::uint32_t>(file.points.size());
-  for (std::uint32_t p = 0; p < count; ++p) file.points.push_back(file.points[p] + Vec3{0, 0, height});
+namespace {
+
+/// Moves a flat mesh through `layers` places, each given by `move`; the last one is the first again if the
+/// way is closed. Each cell becomes one between each two places.
+template <class Move>
+void sweep(MeshFile& file, std::uint32_t layers, bool closed, const Move& move) {
+  const std::vector<Vec3> flat = std::exchange(file.points, {});
   const std::vector<std::uint32_t> points = std::exchange(file.face_points, {}),
                                    ends = std::exchange(file.face_ends, {});
-  std::vector<std::uint32_t> face;
-  std::size_t begin = 0;
   file.cell_ends.clear();
-  for (const std::uint32_t end : ends) {
-    const std::span<const std::uint32_t> own = std::span(points).subspan(begin, end - begin);
-    append_face(own, file);
-    face.clear();
-    for (const std::uint32_t p : own) face.push_back(p + count);
-    append_face(face, file);
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      const std::uint32_t a = own[i], b = own[(i + 1) % own.size()];
-      append_face(std::array{a, b, b + count, a + count}, file);
+  // Points that stay at their places stay one.
+  std::vector<std::vector<std::uint32_t>> numbers(layers);
+  for (std::uint32_t layer = 0; layer < layers; ++layer) {
+    for (std::uint32_t p = 0; p < flat.size(); ++p) {
+      const Vec3 at = move(flat[p], layer);
+      const bool stays = layer > 0 && at == file.points[numbers[0][p]];
+      numbers[layer].push_back(stays ? numbers[0][p] : static_cast<std::uint32_t>(file.points.size()));
+      if (!stays) file.points.push_back(at);
     }
-    end_cell(file);
-    begin = end;
   }
+  std::vector<std::uint32_t> face;
+  for (std::uint32_t layer = 0; layer + (closed ? 0 : 1) < layers; ++layer) {
+    const auto &below = numbers[layer], &above = numbers[(layer + 1) % layers];
+    std::size_t begin = 0;
+    for (const std::uint32_t end : ends) {
+      const std::span<const std::uint32_t> own = std::span(points).subspan(begin, end - begin);
+      for (const auto* side : {&below, &above}) {
+        face.clear();
+        for (const std::uint32_t p : own) face.push_back((*side)[p]);
+        append_face(face, file);
+      }
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const std::uint32_t a = own[i], b = own[(i + 1) % own.size()];
+        append_face(std::array{below[a], below[b], above[b], above[a]}, file);
+      }
+      end_cell(file);
+      begin = end;
+    }
+  }
+  const std::uint32_t copies = closed ? layers : layers - 1;
+  const auto repeat = [](auto& values, std::uint32_t times) {
+    const std::size_t count = values.size();
+    values.reserve(count * times);
+    for (std::uint32_t t = 1; t < times; ++t)
+      values.insert(values.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+  };
   for (GridArray& array : file.arrays) {
-    if (array.centering == Centering::kCells) continue;
-    std::visit([](auto& values) { values.insert(values.end(), values.begin(), values.end()); }, array.values);
+    if (array.centering == Centering::kCells) {
+      std::visit([&](auto& values) { repeat(values, copies); }, array.values);
+      continue;
+    }
+    const auto components = static_cast<std::size_t>(array.components);
+    const auto move_values = [&](auto& values) {
+      const auto of_flat = std::exchange(values, {});
+      values.resize(file.points.size() * components);
+      for (const auto& own : numbers) {
+        for (std::size_t p = 0; p < own.size(); ++p)
+          std::copy_n(of_flat.begin() + static_cast<std::ptrdiff_t>(p * components), components,
+                      values.begin() + static_cast<std::ptrdiff_t>(own[p] * components));
+      }
+    };
+    std::visit(move_values, array.values);
   }
+  repeat(file.block_of_cell, copies);
   file.flat = false;
+}
+
+}  // namespace
+
+void extrude(MeshFile& file, double height) {
+  sweep(file, 2, false, [height](const Vec3& p, std::uint32_t layer) {
+    return p + Vec3{0, 0, layer * height};
+  });
+}
+
+void revolve(const std::string& name, MeshFile& file) {
+  constexpr std::uint32_t kSectors = 48;
+  constexpr double kAngle = 2 * std::numbers::pi / kSectors;
+  double most = 0;
+  for (const Vec3& p : file.points) most = std::max(most, std::abs(p.x));
+  for (Vec3& p : file.points) {
+    if (p.x < -1e-9 * most) fail("{}: --axisymmetric: expected x of 0 or more, found {}", name, p.x);
+    // Up to round-off, a point on the axis lies on it.
+    if (p.x < 1e-9 * most) p.x = 0;
+  }
+  // A polygon of this radius has the area of the circle.
+  const double radius = std::sqrt(kAngle / std::sin(kAngle));
+  sweep(file, kSectors, true, [radius](const Vec3& p, std::uint32_t layer) {
+    if (p.x == 0) return p;
+    return Vec3{radius * p.x * std::cos(layer * kAngle), p.y, p.z + radius * p.x * std::sin(layer * kAngle)};
+  });
 }
 
 }  // namespace adamas::io

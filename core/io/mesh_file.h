@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,13 +33,15 @@ struct MeshFile {
 bool is_mesh_by_header(const std::filesystem::path& path);
 
 /// Reads the cells of a mesh: .vtu, .pvtu, .vts, .pvts, .vtm, legacy .vtk, VTKHDF, ExodusII, CGNS, Silo, and
-/// the cases of OpenFOAM (a file NAME.foam in the case's folder). Of several times the last one is read.
-/// Cells of two dimensions beside others of three are left out, and so are collapsed cells and copies of
-/// cells of other pieces; points at one place are one. The libraries may crash on a corrupt file, so they run
-/// in a child process (read_in_child).
-MeshFile read_mesh_file(const std::filesystem::path& path);
+/// the cases of OpenFOAM (a file NAME.foam in the case's folder). Of several times, that with the number
+/// `time` is read, or else the last one. Cells of two dimensions beside others of three are left out, and so
+/// are collapsed cells and copies of cells of other pieces; points at one place are one. The libraries may
+/// crash on a corrupt file, so they run in a child process (read_in_child).
+MeshFile read_mesh_file(const std::filesystem::path& path, std::optional<std::uint64_t> time = {});
 /// Reads a file as read_mesh_file does, but in this process.
-MeshFile read_mesh_with_vtk(const std::filesystem::path& path);
+MeshFile read_mesh_with_vtk(const std::filesystem::path& path, std::optional<std::uint64_t> time = {});
+/// Finds the times of a file in this process (mesh_times()).
+std::vector<double> mesh_times_with_vtk(const std::filesystem::path& path);
 /// Reads a file of Silo in this process: the first mesh of several blocks or, if there is none, the first
 /// with materials. Mixed zones become volume fractions, and variables with values for them fields per
 /// material.
@@ -46,5 +49,9 @@ MeshFile read_silo_mesh(const std::filesystem::path& path);
 
 /// Makes prisms of this height of the cells of a flat mesh.
 void extrude(MeshFile& file, double height);
+/// Turns the cells of a flat mesh round the axis of y into sectors of rings. Rings are polygons whose areas
+/// are those of circles, so that volumes are exact. Throws Error, which begins with `name`, if a point lies
+/// at x < 0.
+void revolve(const std::string& name, MeshFile& file);
 
 }  // namespace adamas::io

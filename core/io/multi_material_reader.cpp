@@ -96,7 +96,9 @@ class Reader {
     const bool asked = !options_.labels.empty();
     return read_grid_file(path, {.raw = raw_ ? &*raw_ : nullptr,
                                  .labels = asked ? options_.labels : kWrittenLabels,
-                                 .only_array = asked});
+                                 .only_array = asked,
+                                 .stack_spacing = options_.stack_spacing.value_or(Vec3{1, 1, 1}),
+                                 .stack_origin = options_.stack_origin.value_or(Vec3{})});
   }
 
   /// Reads the one array of another file.

@@ -39,6 +39,7 @@ void run_reader(const ReaderRequest& request, ByteSink& sink) {
     case LibraryReader::kMesh:
       return send_mesh(request, sink);
     case LibraryReader::kCells:
+    case LibraryReader::kCellTimes:
       return send_cells(request, sink);
     case LibraryReader::kPolygons:
       return send_polygons(request, sink);
@@ -109,7 +110,13 @@ class Descriptor {
 }  // namespace
 
 ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path) {
-  return {reader, path.string(), check_input_file(path), {path.string()}};
+  ReaderRequest request{reader, path.string(), check_input_file(path), {path.string()}};
+  // These files stand for others beside them.
+  const std::string extension = file_extension(path);
+  for (const char* whole : {".pvti", ".pvtr", ".pvtu", ".pvts", ".vtm", ".vth", ".vthb", ".silo", ".pdb"}) {
+    if (extension == whole) request.input_bytes = size_of_folder(path.parent_path());
+  }
+  return request;
 }
 
 void read_in_child(const ReaderRequest& request, const std::function<void(ByteSource&)>& consume) {

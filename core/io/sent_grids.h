@@ -15,7 +15,7 @@ inline constexpr auto kSentMembers<GridArray> = std::tuple{&GridArray::name,
 template <>
 inline constexpr auto kSentMembers<GridFile> =
     std::tuple{&GridFile::kind,  &GridFile::nodes,  &GridFile::arrays, &GridFile::material_names,
-               &GridFile::faces, &GridFile::aslant, &GridFile::space};
+               &GridFile::faces, &GridFile::aslant, &GridFile::space,  &GridFile::remark};
 
 /// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold
 /// all characters.

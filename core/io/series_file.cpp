@@ -93,15 +93,23 @@ std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs) {
   std::vector<std::string> files = inputs;
   if (inputs.size() == 1) {
     if (file_extension(inputs[0]) == ".pvd") return read_series(inputs[0]);
-    std::error_code unknown;
-    const bool is_pattern = inputs[0].find_first_of("*?#%") != std::string::npos;
-    if (!is_pattern || std::filesystem::exists(inputs[0], unknown)) return {};
+    if (!is_file_pattern(inputs[0])) return {};
     files.clear();
     for (const auto& file : match_stack(inputs[0])) files.push_back(file.string());
   }
   std::vector<SeriesEntry> entries;
   for (const std::string& file : files) entries.push_back({static_cast<double>(entries.size()), file});
   return entries;
+}
+
+std::string SeriesEntry::name() const { return number ? fmt::format("{}: time {}", file, *number) : file; }
+
+std::vector<SeriesEntry> mesh_steps(const std::filesystem::path& path) {
+  std::vector<SeriesEntry> steps;
+  const std::vector<double> times = mesh_times(path);
+  for (std::uint64_t n = 0; times.size() > 1 && n < times.size(); ++n)
+    steps.push_back({times[n], path.string(), n});
+  return steps;
 }
 
 std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs) {

@@ -159,8 +159,11 @@ VolumeSource import_checked_picture(const std::filesystem::path& path, const Vol
 
 void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
   const std::string& name = request.name;
-  const GridFile file = read_grid_with_vtk(request.paths.front());
-  const GridArray& array = chosen_array(name, file, request.array);
+  const std::filesystem::path path = request.paths.front();
+  const GridFile file = read_grid_in_process(path, request.array);
+  // Of a folder of DICOM, the name is that of a series.
+  const GridArray& array =
+      chosen_array(name, file, std::filesystem::is_directory(path) ? std::string() : request.array);
   ImportedVolume volume;
   set_places(name, file, volume);
   if (file.aslant) set_directions(*file.aslant, volume);
@@ -180,6 +183,14 @@ InputFormat legacy_vtk_format() {
           .endings = ".vtk",
           .shown_by = [](std::string_view bytes) { return bytes.starts_with("# vtk DataFile"); },
           .read_grid = read_checked_legacy,
+          .find_volume = import_grid,
+          .several_arrays = true};
+}
+
+InputFormat vtk_pieces_format() {
+  return {.name = "VTK XML grid in pieces",
+          .endings = ".pvti .pvtr",
+          .read_grid = read_grid_by_library,
           .find_volume = import_grid,
           .several_arrays = true};
 }

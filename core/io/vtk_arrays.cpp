@@ -1,9 +1,14 @@
 #include "core/io/vtk_arrays.h"
 
 #include <fmt/format.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+#include <vtkStringArray.h>
 
-#include <span>
+#include <algorithm>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/io/grid_numbers.h"
@@ -41,7 +46,76 @@ std::vector<std::string> component_names(vtkDataArray& source) {
   return names;
 }
 
+vtkDataSetAttributes& attributes(vtkDataSet& set, Centering centering) {
+  if (centering == Centering::kCells) return *set.GetCellData();
+  return *set.GetPointData();
+}
+
+/// Lists the names of all arrays of the pieces, in the order in which they come first.
+std::vector<std::string> array_names(std::span<const MeshPiece> pieces, Centering centering) {
+  std::vector<std::string> names;
+  for (const MeshPiece& piece : pieces) {
+    vtkDataSetAttributes& own = attributes(*piece.set, centering);
+    for (int i = 0; i < own.GetNumberOfArrays(); ++i) {
+      const char* name = own.GetAbstractArray(i)->GetName();
+      if (name == nullptr || name == std::string_view("vtkGhostType")) continue;
+      if (std::ranges::find(names, name) == names.end()) names.emplace_back(name);
+    }
+  }
+  return names;
+}
+
+/// Makes an array without values of the type, the components and the name of another.
+vtkSmartPointer<vtkDataArray> empty_like(vtkDataArray& own) {
+  auto result = vtk::TakeSmartPointer(own.NewInstance());
+  result->SetName(own.GetName());
+  result->SetNumberOfComponents(own.GetNumberOfComponents());
+  for (int c = 0; own.HasAComponentName() && c < own.GetNumberOfComponents(); ++c) {
+    if (own.GetComponentName(c) != nullptr) result->SetComponentName(c, own.GetComponentName(c));
+  }
+  return result;
+}
+
+/// Joins the values of an array; null unless all pieces have it as numbers of one type.
+vtkSmartPointer<vtkDataArray> joined(const std::string& file, const std::string& name,
+                                     std::span<const MeshPiece> pieces, Centering centering) {
+  vtkSmartPointer<vtkDataArray> result;
+  for (const MeshPiece& piece : pieces) {
+    vtkDataArray* own = attributes(*piece.set, centering).GetArray(name.c_str());
+    if (own == nullptr) return nullptr;
+    if (result == nullptr) result = empty_like(*own);
+    if (own->GetDataType() != result->GetDataType() ||
+        own->GetNumberOfComponents() != result->GetNumberOfComponents())
+      return nullptr;
+    const bool of_cells = centering == Centering::kCells;
+    const vtkIdType items = of_cells ? piece.set->GetNumberOfCells() : piece.set->GetNumberOfPoints();
+    if (own->GetNumberOfTuples() != items)
+      fail("{}: array '{}': expected values of {} {}, found {}", file, name, items,
+           of_cells ? "cells" : "points", own->GetNumberOfTuples());
+    for (const vtkIdType i : of_cells ? piece.cells : piece.points) result->InsertNextTuple(i, own);
+  }
+  return result;
+}
+
 }  // namespace
+
+void add_arrays_of(const std::string& name, std::span<const MeshPiece> pieces, MeshFile& file) {
+  for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
+    for (const std::string& array : array_names(pieces, centering)) {
+      const auto values = joined(name, array, pieces, centering);
+      if (values != nullptr) {
+        file.arrays.push_back(grid_array(*values, centering));
+      } else {
+        file.add_remark(
+            fmt::format("array '{}' is not read: not all blocks have it as numbers of one type", array));
+      }
+    }
+  }
+  auto* names =
+      vtkStringArray::SafeDownCast(pieces[0].set->GetFieldData()->GetAbstractArray("material_names"));
+  for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i)
+    file.material_names.push_back(names->GetValue(i));
+}
 
 GridArray grid_array(vtkDataArray& source, Centering centering) {
   GridArray array;

@@ -11,6 +11,8 @@
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkXMLImageDataReader.h>
+#include <vtkXMLPImageDataReader.h>
+#include <vtkXMLPRectilinearGridReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 
 #include "core/base/error.h"
@@ -94,6 +96,15 @@ void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, 
   if (image != nullptr) lay_out(axes_of(*image), file);
 }
 
+template <class Reader>
+GridFile read_xml(const std::string& name, const char* kind, const VtkMessages& messages) {
+  GridFile file;
+  file.kind = kind;
+  add_data(name, read_if_readable<Reader>(name, fmt::format("a {}", kind), messages), ArrayPlaces::kStated,
+           file);
+  return file;
+}
+
 GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
   GridFile file;
   file.kind = "legacy VTK";
@@ -130,14 +141,13 @@ GridFile read_grid_with_vtk(const std::filesystem::path& path) {
   const std::string name = path.string(), extension = file_extension(path);
   GridFile file;
   if (extension == ".vti") {
-    file.kind = "VTK XML image";
-    add_data(name, read_if_readable<vtkXMLImageDataReader>(name, "VTK XML image data", messages),
-             ArrayPlaces::kStated, file);
+    file = read_xml<vtkXMLImageDataReader>(name, "VTK XML image", messages);
+  } else if (extension == ".pvti") {
+    file = read_xml<vtkXMLPImageDataReader>(name, "VTK XML image in pieces", messages);
   } else if (extension == ".vtr") {
-    file.kind = "VTK XML rectilinear grid";
-    add_data(name,
-             read_if_readable<vtkXMLRectilinearGridReader>(name, "a VTK XML rectilinear grid", messages),
-             ArrayPlaces::kStated, file);
+    file = read_xml<vtkXMLRectilinearGridReader>(name, "VTK XML rectilinear grid", messages);
+  } else if (extension == ".pvtr") {
+    file = read_xml<vtkXMLPRectilinearGridReader>(name, "VTK XML rectilinear grid in pieces", messages);
   } else if (extension == ".vtk") {
     file = read_legacy(name, messages);
   } else if (extension == ".tif" || extension == ".tiff") {

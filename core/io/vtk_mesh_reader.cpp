@@ -25,12 +25,14 @@
 #include <vtkXMLPStructuredGridReader.h>
 #include <vtkXMLPUnstructuredGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
+#include <vtkXMLUniformGridAMRReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -39,6 +41,7 @@
 #include "core/io/input_file.h"
 #include "core/io/mesh_builder.h"
 #include "core/io/mesh_file.h"
+#include "core/io/vtk_amr_reader.h"
 #include "core/io/vtk_arrays.h"
 #include "core/io/vtk_support.h"
 
@@ -148,14 +151,6 @@ bool is_flat(int type) {
   }
 }
 
-/// One data set of a file, with what is taken of it.
-struct Piece {
-  vtkSmartPointer<vtkDataSet> set;
-  std::string block;
-  std::vector<vtkIdType> cells;   ///< those that are taken
-  std::vector<vtkIdType> points;  ///< those that get a new number
-};
-
 /// Collects the cells of the data sets of a file.
 class CellCollector {
  public:
@@ -196,7 +191,7 @@ class CellCollector {
     std::map<int, std::size_t> refused;
     std::vector<std::vector<vtkIdType>> polygons(pieces_.size());
     for (std::size_t n = 0; n < pieces_.size(); ++n) {
-      Piece& piece = pieces_[n];
+      MeshPiece& piece = pieces_[n];
       const vtkUnsignedCharArray* ghosts = piece.set->GetCellGhostArray();
       for (vtkIdType c = 0; c < piece.set->GetNumberOfCells(); ++c) {
         const unsigned ghost = ghosts != nullptr && c < ghosts->GetNumberOfTuples()
@@ -225,14 +220,14 @@ class CellCollector {
           "type {}",
           name_, refused.begin()->second, refused.begin()->first);
     }
-    file_.flat = std::ranges::all_of(pieces_, [](const Piece& piece) { return piece.cells.empty(); });
+    file_.flat = std::ranges::all_of(pieces_, [](const MeshPiece& piece) { return piece.cells.empty(); });
     for (std::size_t n = 0; file_.flat && n < pieces_.size(); ++n) {
       flat_ -= polygons[n].size();
       pieces_[n].cells = std::move(polygons[n]);
     }
-    std::erase_if(pieces_, [](const Piece& piece) { return piece.cells.empty(); });
+    std::erase_if(pieces_, [](const MeshPiece& piece) { return piece.cells.empty(); });
     if (pieces_.empty()) fail("{}: expected cells with a volume, found none", name_);
-    for (const Piece& piece : pieces_) {
+    for (const MeshPiece& piece : pieces_) {
       std::array<double, 6> bounds{};
       piece.set->GetBounds(bounds.data());
       const double size = std::max(bounds[1] - bounds[0], bounds[3] - bounds[2]);
@@ -245,7 +240,7 @@ class CellCollector {
   void number_points() {
     Box3 box;
     std::size_t count = 0;
-    for (const Piece& piece : pieces_) {
+    for (const MeshPiece& piece : pieces_) {
       count += static_cast<std::size_t>(piece.set->GetNumberOfPoints());
       std::array<double, 6> bounds{};
       piece.set->GetBounds(bounds.data());
@@ -255,7 +250,7 @@ class CellCollector {
     if (count >= std::numeric_limits<Index>::max())
       fail("{}: expected fewer than {} points, found {}", name_, std::numeric_limits<Index>::max(), count);
     PointMerger merger(PointMerger::kCoincident * std::max(box.diagonal(), 1e-300), file_.points);
-    for (Piece& piece : pieces_) {
+    for (MeshPiece& piece : pieces_) {
       std::vector<Index>& numbers = numbers_.emplace_back();
       for (vtkIdType p = 0; p < piece.set->GetNumberOfPoints(); ++p) {
         std::array<double, 3> x{};
@@ -350,7 +345,8 @@ class CellCollector {
       collapsed_ += pieces_[n].cells.size() - kept.size();
       pieces_[n].cells = kept;
     }
-    std::erase_if(pieces_, [](const Piece& piece) { return piece.cells.empty() && piece.points.empty(); });
+    std::erase_if(pieces_,
+                  [](const MeshPiece& piece) { return piece.cells.empty() && piece.points.empty(); });
     if (collapsed_ > 0)
       file_.add_remark(fmt::format("{} cells that have collapsed are left out", collapsed_));
     if (hidden_ > 0)
@@ -359,71 +355,18 @@ class CellCollector {
     if (flat_ > 0) file_.add_remark(fmt::format("{} cells of surfaces and lines are not read", flat_));
   }
 
-  static vtkDataSetAttributes& attributes(vtkDataSet& set, Centering centering) {
-    if (centering == Centering::kCells) return *set.GetCellData();
-    return *set.GetPointData();
-  }
-
   void add_arrays() {
-    for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
-      std::vector<std::string> names;
-      for (const Piece& piece : pieces_) {
-        vtkDataSetAttributes& own = attributes(*piece.set, centering);
-        for (int i = 0; i < own.GetNumberOfArrays(); ++i) {
-          const char* name = own.GetAbstractArray(i)->GetName();
-          if (name == nullptr || name == std::string_view("vtkGhostType")) continue;
-          if (std::ranges::find(names, name) == names.end()) names.emplace_back(name);
-        }
-      }
-      for (const std::string& name : names) {
-        if (!add_array(name, centering))
-          file_.add_remark(
-              fmt::format("array '{}' is not read: not all blocks have it as numbers of one type", name));
-      }
-    }
+    add_arrays_of(name_, pieces_, file_);
     const bool on_points = std::ranges::any_of(
         file_.arrays, [](const GridArray& array) { return array.centering == Centering::kPoints; });
     if (merged_ > 0 && on_points)
       file_.add_remark(
           fmt::format("{} points at the places of others are left out with their values", merged_));
-    auto* names =
-        vtkStringArray::SafeDownCast(pieces_[0].set->GetFieldData()->GetAbstractArray("material_names"));
-    for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i)
-      file_.material_names.push_back(names->GetValue(i));
-  }
-
-  /// Adds an array if all pieces have it.
-  bool add_array(const std::string& name, Centering centering) {
-    vtkSmartPointer<vtkDataArray> joined;
-    for (const Piece& piece : pieces_) {
-      vtkDataArray* own = attributes(*piece.set, centering).GetArray(name.c_str());
-      if (own == nullptr) return false;
-      if (joined == nullptr) {
-        joined = vtk::TakeSmartPointer(own->NewInstance());
-        joined->SetName(name.c_str());
-        joined->SetNumberOfComponents(own->GetNumberOfComponents());
-        for (int c = 0; own->HasAComponentName() && c < own->GetNumberOfComponents(); ++c) {
-          if (own->GetComponentName(c) != nullptr) joined->SetComponentName(c, own->GetComponentName(c));
-        }
-      }
-      if (own->GetDataType() != joined->GetDataType() ||
-          own->GetNumberOfComponents() != joined->GetNumberOfComponents())
-        return false;
-      const vtkIdType items =
-          centering == Centering::kCells ? piece.set->GetNumberOfCells() : piece.set->GetNumberOfPoints();
-      if (own->GetNumberOfTuples() != items)
-        fail("{}: array '{}': expected values of {} {}, found {}", name_, name, items,
-             centering == Centering::kCells ? "cells" : "points", own->GetNumberOfTuples());
-      for (const vtkIdType i : centering == Centering::kCells ? piece.cells : piece.points)
-        joined->InsertNextTuple(i, own);
-    }
-    file_.arrays.push_back(grid_array(*joined, centering));
-    return true;
   }
 
   /// Sets the blocks, in the order in which their names come first, and that of each cell.
   void add_blocks() {
-    for (const Piece& piece : pieces_) {
+    for (const MeshPiece& piece : pieces_) {
       const auto found = std::ranges::find(file_.blocks, piece.block);
       const auto number = static_cast<std::int32_t>(found - file_.blocks.begin());
       if (found == file_.blocks.end()) file_.blocks.push_back(piece.block);
@@ -438,7 +381,7 @@ class CellCollector {
   static constexpr double kFlat = 1e-9;
 
   std::string name_;
-  std::vector<Piece> pieces_;
+  std::vector<MeshPiece> pieces_;
   std::vector<std::vector<Index>> numbers_;                             // of the points of each piece
   vtkSmartPointer<vtkIdList> ids_ = vtkSmartPointer<vtkIdList>::New();  // of the points of one cell
   std::size_t flat_ = 0, hidden_ = 0, collapsed_ = 0, merged_ = 0;
@@ -466,22 +409,17 @@ MeshFile read_xml(const std::string& name, const char* kind, const VtkMessages& 
   return collected(name, kind, data);
 }
 
-/// Updates a reader of files with several times to the last one; returns a remark on it.
-std::string update_to_last_time(vtkAlgorithm& reader) {
-  reader.UpdateInformation();
-  vtkInformation& information = *reader.GetOutputInformation(0);
-  auto* const key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
-  const int count = information.Has(key) != 0 ? information.Length(key) : 0;
-  if (count < 2) {
-    reader.Update();
-    return {};
-  }
-  const double last = information.Get(key, count - 1);
-  reader.UpdateTimeStep(last);
-  return fmt::format("of {} times the last one is read, {:g}", count, last);
+MeshFile read_amr(const std::string& name, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<vtkXMLUniformGridAMRReader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0)
+    fail("{}: expected VTK XML AMR data, found something else", name);
+  reader->SetMaximumLevelsToReadByDefault(0);  // all
+  MeshFile file = cells_of_amr(name, *read_with_vtk(*reader, name, messages));
+  file.kind = "VTK XML AMR";
+  return file;
 }
 
-MeshFile read_openfoam(const std::string& name, const VtkMessages& messages) {
+vtkSmartPointer<vtkAlgorithm> open_openfoam(const std::string& name) {
   const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
   reader->SetFileName(name.c_str());
   reader->DecomposePolyhedraOff();
@@ -493,12 +431,10 @@ MeshFile read_openfoam(const std::string& name, const VtkMessages& messages) {
     const std::string patch = reader->GetPatchArrayName(i);
     reader->SetPatchArrayStatus(patch.c_str(), patch.ends_with("internalMesh") ? 1 : 0);
   }
-  const std::string remark = update_to_last_time(*reader);
-  messages.check(name);
-  return collected(name, "OpenFOAM case", reader->GetOutputDataObject(0), remark);
+  return reader;
 }
 
-MeshFile read_exodus(const std::string& name, const VtkMessages& messages) {
+vtkSmartPointer<vtkAlgorithm> open_exodus(const std::string& name) {
   const auto reader = vtkSmartPointer<vtkExodusIIReader>::New();
   if (reader->CanReadFile(name.c_str()) == 0)
     fail("{}: expected an ExodusII file, found something else", name);
@@ -506,15 +442,10 @@ MeshFile read_exodus(const std::string& name, const VtkMessages& messages) {
   reader->UpdateInformation();
   for (const int type : {vtkExodusIIReader::ELEM_BLOCK, vtkExodusIIReader::NODAL})
     reader->SetAllArrayStatus(type, 1);
-  const int steps = reader->GetNumberOfTimeSteps();
-  if (steps > 0) reader->SetTimeStep(steps - 1);
-  reader->Update();
-  messages.check(name);
-  const std::string remark = steps > 1 ? fmt::format("of {} times the last one is read", steps) : "";
-  return collected(name, "ExodusII", reader->GetOutputDataObject(0), remark);
+  return reader;
 }
 
-MeshFile read_cgns(const std::string& name, const VtkMessages& messages) {
+vtkSmartPointer<vtkAlgorithm> open_cgns(const std::string& name) {
   const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
   reader->SetFileName(name.c_str());
   reader->UpdateInformation();
@@ -522,18 +453,66 @@ MeshFile read_cgns(const std::string& name, const VtkMessages& messages) {
   reader->EnableAllFamilies();
   reader->EnableAllCellArrays();
   reader->EnableAllPointArrays();
-  const std::string remark = update_to_last_time(*reader);
+  return reader;
+}
+
+/// A format whose files may have several times, and its reader.
+struct TimedFormat {
+  const char* kind;
+  vtkSmartPointer<vtkAlgorithm> (*open)(const std::string& name);
+};
+
+/// Returns the format of a file that may have several times; none for those of the other endings here.
+std::optional<TimedFormat> timed_format(const std::string& extension) {
+  if (extension == ".foam") return TimedFormat{"OpenFOAM case", open_openfoam};
+  if (extension == ".cgns") return TimedFormat{"CGNS", open_cgns};
+  for (const char* exodus : {".exo", ".e", ".ex2", ".exii", ".g", ".gen"}) {
+    if (extension == exodus) return TimedFormat{"ExodusII", open_exodus};
+  }
+  return {};
+}
+
+std::vector<double> times_of(vtkAlgorithm& reader) {
+  reader.UpdateInformation();
+  vtkInformation& information = *reader.GetOutputInformation(0);
+  auto* const key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
+  if (information.Has(key) == 0) return {};
+  const double* first = information.Get(key);
+  return {first, first + information.Length(key)};
+}
+
+MeshFile read_timed(const std::string& name, const TimedFormat& format, std::optional<std::uint64_t> time,
+                    const VtkMessages& messages) {
+  const auto reader = format.open(name);
+  const std::vector<double> times = times_of(*reader);
+  if (time && *time >= std::max<std::size_t>(times.size(), 1))
+    fail("{}: --time: expected a time from 0 to {}, found {}", name,
+         std::max<std::size_t>(times.size(), 1) - 1, *time);
+  std::string remark;
+  if (times.empty()) {
+    reader->Update();
+  } else {
+    const double chosen = times[time.value_or(times.size() - 1)];
+    reader->UpdateTimeStep(chosen);
+    if (!time && times.size() > 1)
+      remark = fmt::format("of {} times the last one is read, {:g} (others by --time N, from 0 on)",
+                           times.size(), chosen);
+  }
   messages.check(name);
-  return collected(name, "CGNS", reader->GetOutputDataObject(0), remark);
+  return collected(name, format.kind, reader->GetOutputDataObject(0), remark);
 }
 
 }  // namespace
 
-MeshFile read_mesh_with_vtk(const std::filesystem::path& path) {
+MeshFile read_mesh_with_vtk(const std::filesystem::path& path, std::optional<std::uint64_t> time) {
   const VtkMessages messages;
   const std::string name = path.string(), extension = file_extension(path);
+  if (const auto format = timed_format(extension)) return read_timed(name, *format, time, messages);
+  if (time.value_or(0) != 0) fail("{}: --time: expected a time from 0 to 0, found {}", name, *time);
   MeshFile file;
-  if (extension == ".vtu") {
+  if (extension == ".vth" || extension == ".vthb") {
+    file = read_amr(name, messages);
+  } else if (extension == ".vtu") {
     file = read_xml<vtkXMLUnstructuredGridReader>(name, "VTK XML unstructured grid", messages);
   } else if (extension == ".pvtu") {
     file = read_xml<vtkXMLPUnstructuredGridReader>(name, "VTK XML unstructured grid in pieces", messages);
@@ -543,19 +522,23 @@ MeshFile read_mesh_with_vtk(const std::filesystem::path& path) {
     file = read_xml<vtkXMLPStructuredGridReader>(name, "VTK XML structured grid in pieces", messages);
   } else if (extension == ".vtm") {
     file = read_xml<vtkXMLMultiBlockDataReader>(name, "VTK XML multiblock file", messages);
-  } else if (extension == ".vtk") {
-    file = collected(name, "legacy VTK mesh", read_legacy_vtk(name, messages));
-  } else if (extension == ".foam") {
-    file = read_openfoam(name, messages);
   } else if (extension == ".vtkhdf") {
     file = collected(name, "VTKHDF", read_if_readable<vtkHDFReader>(name, "VTKHDF", messages));
-  } else if (extension == ".cgns") {
-    file = read_cgns(name, messages);
   } else {
-    file = read_exodus(name, messages);
+    file = collected(name, "legacy VTK mesh", read_legacy_vtk(name, messages));
   }
   messages.check(name);
   return file;
+}
+
+std::vector<double> mesh_times_with_vtk(const std::filesystem::path& path) {
+  const VtkMessages messages;
+  const auto format = timed_format(file_extension(path));
+  if (!format) return {};
+  const auto reader = format->open(path.string());
+  const std::vector<double> times = times_of(*reader);
+  messages.check(path.string());
+  return times;
 }
 
 }  // namespace adamas::io

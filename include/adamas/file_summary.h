@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -46,10 +47,11 @@ struct FileSummary {
 void check_readable(const std::filesystem::path& path);
 
 /// Reads a file of any kind and summarises it. `wanted`: the centering of its values, whatever it says;
-/// `otherwise`: the centering where the file says nothing; `raw`: what a file without a header holds. Throws
-/// Error, with the file's name, where the file cannot be used.
+/// `otherwise`: the centering where the file says nothing; `raw`: what a file without a header holds; `time`:
+/// the number of a time of a file of cells (mesh_times()), or else the last one. Throws Error, with the
+/// file's name, where the file cannot be used.
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
-                           Centering otherwise = Centering::kPoints,
-                           const std::optional<RawVolume>& raw = {});
+                           Centering otherwise = Centering::kPoints, const std::optional<RawVolume>& raw = {},
+                           std::optional<std::uint64_t> time = {});
 
 }  // namespace adamas

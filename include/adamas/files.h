@@ -36,7 +36,8 @@ enum class InputKind : std::uint8_t {
 };
 
 /// Options that say how a file is read as multi-material data. FILE-or-ARRAY names an array of the main file,
-/// or else a file on the same grid that holds one array.
+/// or else a file on the same grid that holds one array. A file may be a pattern of pictures too, TIFF or
+/// PNG, one plane in each (match_stack), as "labels_*.tif".
 struct MaterialDataOptions {
   /// Materials and their volume fractions: NAME, FILE-or-ARRAY. Where neither these nor `fraction_array` are
   /// given, every array whose name contains "volume fraction" is a material, or one for each of its
@@ -59,6 +60,13 @@ struct MaterialDataOptions {
   std::vector<std::string> extensive;
   /// The height of the cells that are made of a mesh of two dimensions; none: such meshes are refused.
   std::optional<double> extrude;
+  /// Whether a mesh of two dimensions is turned round the axis of y: x is the distance from it. Cells become
+  /// 48 sectors of rings, whose volumes are those of the rings.
+  bool axisymmetric = false;
+  /// The number of a time, from 0 on, of a file of cells with several (mesh_times()); none: the last one.
+  std::optional<std::uint64_t> time;
+  /// Of a pattern of pictures: the distances of samples, and the place of the first one.
+  std::optional<Vec3> stack_spacing, stack_origin;
   /// x0, x1, y0, y1, z0, z1: only the sites in this box are kept.
   std::optional<std::array<double, 6>> region;
   /// The centering of the values, whatever the files say.

@@ -28,7 +28,8 @@ struct InputOptions {
   /// first file of `data` that holds volume fractions or labels is the main one.
   std::filesystem::path path{};
   MaterialDataOptions data{};            ///< what is read of a grid; its notes go to the progress
-  RawOptions raw{};                      ///< what files without a header hold
+  bool stack = false;                    ///< `path` is a pattern of pictures, and no series of files
+  RawOptions raw{};                      ///< what files without a header hold, and the places of a stack
   std::vector<GivenSurface> surfaces{};  ///< interfaces, instead of a network or beside a grid
   /// A file with names of the labels of a network, a line "LABEL NAME" for each.
   std::filesystem::path region_names{};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,6 +15,10 @@ namespace adamas ADAMAS_API {
 struct SeriesEntry {
   double time = 0;
   std::string file;
+  std::optional<std::uint64_t> number{};  ///< the number of the time in a file with several; else none
+
+  /// Returns what messages call it: the file, and the number of the time where it has one.
+  [[nodiscard]] std::string name() const;
 };
 
 /// Writes a .pvd, the list of files that ParaView and VisIt read as a series. Throws Error where it cannot be
@@ -37,6 +42,13 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
 /// (match_stack), or several files in the order given, at the times 0, 1, 2 and so on. The result is empty
 /// for a single file other than a .pvd. Throws Error as read_series() and match_stack() do.
 std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
+
+/// Returns the times that a file of cells has, in ascending order: those of ExodusII, CGNS and OpenFOAM; none
+/// for other files. Throws Error, with the file's name, where it cannot be read.
+std::vector<double> mesh_times(const std::filesystem::path& path);
+
+/// Returns a step for each time of a file of cells; none where it has fewer than two.
+std::vector<SeriesEntry> mesh_steps(const std::filesystem::path& path);
 
 /// Returns the steps of find_series(). Throws Error for the first step whose file does not exist.
 std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs);

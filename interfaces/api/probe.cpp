@@ -164,6 +164,10 @@ InputProbe probe_and_integrate(const Input& input, std::span<const Vec3> points,
   const ResamplingSource source = input.contents().source(how, progress);
   result.samples = probe_source(input, source, points, progress);
   progress.check();
+  if (const MeshData* cells = input.contents().cells.get()) {
+    result.totals = to_totals(material_integrals(*cells, source.volumes), source.materials);
+    return result;
+  }
   for (MaterialId m(0); m.value < source.volumes.size(); ++m.value)
     result.totals.push_back({source.materials[m], source.volumes[m], {}, {}});
   result.interfaces = interface_areas(source);
@@ -191,6 +195,10 @@ std::vector<MaterialTotals> input_totals(const AdaptiveMesh& mesh) {
     return to_totals(material_integrals(*data), data->materials);
   const IdVector<MaterialId, double>& volumes =
       contents.run ? contents.run->source.volumes : contents.input_volumes;
+  if (contents.run && contents.run->input->cells) {
+    const auto& materials = contents.run->source.materials;
+    return to_totals(material_integrals(*contents.run->input->cells, volumes), materials);
+  }
   std::vector<MaterialTotals> totals;
   for (MaterialId m(0); m.value < volumes.size(); ++m.value)
     totals.push_back({contents.materials[m.value], volumes[m], {}, {}});

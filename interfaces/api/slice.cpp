@@ -39,7 +39,9 @@ std::optional<FieldChoice> chosen(const std::vector<FieldInfo>& fields, const Sl
   return find_field(fields, options.field, source);
 }
 
-Slice slice_data(const MultiMaterialData& data, const Plane& plane, const SliceFieldOptions& options) {
+/// `data`: on a grid, or on a mesh of cells.
+template <class Data>
+Slice slice_data(const Data& data, const Plane& plane, const SliceFieldOptions& options) {
   const std::vector<FieldInfo> fields = field_infos(data);
   const auto field = chosen(fields, options, data.source);
   Slice result = to_slice(cross_section(data, plane, field), plane, data.materials);
@@ -68,9 +70,7 @@ Slice slice(const Input& input, const Plane& plane, const SliceFieldOptions& opt
   const Input::Contents& contents = input.contents();
   if (contents.data && (!contents.mesh || !options.field.empty()))
     return slice_data(*contents.data, plane, options);
-  if (contents.cells && !options.field.empty())
-    fail("{}: a field in a slice: expected data on a grid or a resampled mesh, found a mesh of cells",
-         input.name());
+  if (contents.cells && !options.field.empty()) return slice_data(*contents.cells, plane, options);
   static_cast<void>(chosen({}, options, input.name()));
   const ResamplingSource source = contents.source({}, progress);
   return to_slice(cross_section(*source.network, source.box, source.materials.size(), plane, source.name),

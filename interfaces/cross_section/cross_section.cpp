@@ -414,8 +414,9 @@ class GridSection {
   std::array<std::vector<Interval>, 3> intervals_;
 };
 
-/// Returns the edges of the pieces, each once, without those between two pieces of one site.
-std::vector<Segment> site_edges(const std::vector<SectionPiece>& pieces) {
+}  // namespace
+
+std::vector<Segment> piece_edges(const std::vector<SectionPiece>& pieces) {
   struct Edge {
     Segment segment;
     std::size_t site;
@@ -442,8 +443,6 @@ std::vector<Segment> site_edges(const std::vector<SectionPiece>& pieces) {
   return result;
 }
 
-}  // namespace
-
 CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
                            const std::optional<FieldChoice>& field, bool cell_edges) {
   const GridSection grid(data, plane, field);
@@ -451,7 +450,7 @@ CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
   parallel_for(layers.size(), 1, [&](std::size_t layer) { grid.cut_layer(layer, layers[layer]); });
   CrossSection section;
   for (auto& pieces : layers) append(section.pieces, pieces);
-  if (cell_edges) section.cell_edges = site_edges(section.pieces);
+  if (cell_edges) section.cell_edges = piece_edges(section.pieces);
   section.material_area.assign(data.materials.size(), 0);
   for (const SectionPiece& piece : section.pieces) {
     const double area = polygon_area(piece.corners);

@@ -7,6 +7,7 @@
 
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
+#include "core/data/mesh_data.h"
 #include "core/data/multi_material_data.h"
 #include "core/geometry/plane.h"
 #include "core/geometry/plane_sides.h"
@@ -61,6 +62,15 @@ CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
 /// there are no interface edges.
 CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
                            const std::optional<FieldChoice>& field, bool cell_edges = true);
+
+/// Cuts data on a mesh of cells by a plane: a piece, which need not be convex, for each cell that it cuts,
+/// with the values of the cell or, for fields on points, linear ones along its edges. Materials are shown as
+/// above; cells that do not fill the box leave the rest empty.
+CrossSection cross_section(const MeshData& data, const Plane& plane, const std::optional<FieldChoice>& field,
+                           bool cell_edges = true);
+
+/// Returns the edges of pieces, each once, without those between two pieces of one cell.
+std::vector<Segment> piece_edges(const std::vector<SectionPiece>& pieces);
 
 /// Cuts given interfaces in a box by a plane. The pieces are trapezoids and triangles between the lines in
 /// which the plane cuts the interfaces, found by exact predicates (trapezoidal_decomposition()); there are no

@@ -64,14 +64,23 @@ std::string field_label(std::span<const FieldInfo> fields, const FieldChoice& ch
   return field.unit.empty() ? label : fmt::format("{} [{}]", label, field.unit);
 }
 
-std::vector<FieldInfo> field_infos(const MultiMaterialData& data) {
+namespace {
+
+template <class Fields>
+std::vector<FieldInfo> infos_of(const Fields& fields) {
   std::vector<FieldInfo> infos;
   std::size_t offset = 0;
-  for (const Field& field : data.fields) {
+  for (const Field& field : fields) {
     infos.push_back({field.name, field.unit, field.components, offset, 0, 0});
     offset += static_cast<std::size_t>(field.components);
   }
   return infos;
 }
+
+}  // namespace
+
+std::vector<FieldInfo> field_infos(const MultiMaterialData& data) { return infos_of(data.fields); }
+
+std::vector<FieldInfo> field_infos(const MeshData& data) { return infos_of(data.fields); }
 
 }  // namespace adamas::interfaces

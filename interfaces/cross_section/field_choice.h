@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/data/mesh_data.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/fields/field_source.h"
 
@@ -29,5 +30,7 @@ std::string field_label(std::span<const FieldInfo> fields, const FieldChoice& ch
 
 /// Returns the names, units and offsets of the fields of data on a grid, without ranges.
 std::vector<FieldInfo> field_infos(const MultiMaterialData& data);
+/// The same of data on a mesh of cells.
+std::vector<FieldInfo> field_infos(const MeshData& data);
 
 }  // namespace adamas::interfaces

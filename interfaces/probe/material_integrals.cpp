@@ -38,6 +38,13 @@ Weights centroid(const std::array<Weights, 4>& corners) {
   return w;
 }
 
+/// The values of a field that a material has; null if it has none.
+const FieldValues* values_of(const Field& field, MaterialId m) {
+  if (!field.per_material()) return &field.values;
+  const bool has = m.value < field.material_values.size() && !field.material_values[m].empty();
+  return has ? &field.material_values[m] : nullptr;
+}
+
 }  // namespace
 
 IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& mesh) {
@@ -105,13 +112,9 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialDat
         std::size_t row = 0;
         for (const Field& field : data.fields) {
           const auto components = static_cast<std::size_t>(field.components);
-          const FieldValues* given = &field.values;
-          if (field.per_material())
-            given = m.value < field.material_values.size() ? &field.material_values[m] : nullptr;
-          for (std::size_t c = 0; c < components; ++c, ++row) {
-            const bool known = given != nullptr && !given->empty();
-            sums[m].integral[row] += volume * (known ? (*given)[site * components + c] : kNothing);
-          }
+          const FieldValues* given = values_of(field, m);
+          for (std::size_t c = 0; c < components; ++c, ++row)
+            sums[m].integral[row] += volume * (given != nullptr ? (*given)[site * components + c] : kNothing);
         }
       }
     };
@@ -122,6 +125,40 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialDat
   });
   Integrals integrals = zeros(data.materials.size(), values);
   for (const Integrals& sums : layers) add(integrals, sums);
+  find_means(integrals);
+  return integrals;
+}
+
+IdVector<MaterialId, MaterialIntegral> material_integrals(const MeshData& data,
+                                                          const IdVector<MaterialId, double>& volumes) {
+  std::size_t values = 0;
+  for (const MeshField& field : data.fields) values += static_cast<std::size_t>(field.components);
+  Integrals integrals = zeros(data.materials.size(), values);
+  for (std::size_t cell = 0; cell < data.mesh.cell_count(); ++cell) {
+    const auto points = data.mesh.points_of_cell(cell);
+    for (MaterialId m(0); m.value < integrals.size(); ++m.value) {
+      const double volume = data.mesh.cell_volume(cell) * static_cast<double>(data.fraction(m, cell));
+      if (volume == 0) continue;
+      integrals[m].volume += volume;
+      std::size_t row = 0;
+      for (const MeshField& field : data.fields) {
+        const auto components = static_cast<std::size_t>(field.components);
+        const FieldValues* given = values_of(field, m);
+        for (std::size_t c = 0; c < components; ++c, ++row) {
+          double value = given != nullptr ? 0 : kNothing;
+          if (given != nullptr && field.centering == Centering::kCells)
+            value = (*given)[cell * components + c];
+          if (given != nullptr && field.centering == Centering::kPoints) {
+            for (const auto p : points) value += (*given)[p * components + c];
+            value /= static_cast<double>(points.size());
+          }
+          integrals[m].integral[row] += volume * value;
+        }
+      }
+    }
+  }
+  for (MaterialId m(integrals.size()); m.value < volumes.size(); ++m.value)
+    integrals.push_back({volumes[m], std::vector(values, kNothing), std::vector(values, kNothing)});
   find_means(integrals);
   return integrals;
 }

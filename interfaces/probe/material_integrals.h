@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/base/typed_id.h"
+#include "core/data/mesh_data.h"
 #include "core/data/multi_material_data.h"
 #include "core/data/solver_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
@@ -25,6 +26,12 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& m
 /// Computes the integrals over data on a grid: the sums over the sites of volume times fraction times value.
 /// A mixed field's value counts for each material that the site holds.
 IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialData& data);
+
+/// Computes the integrals over data on a mesh of cells, as above; a cell's value of a field on points is the
+/// mean of its points'. `volumes`: those of the source's materials; what comes behind those of the data, the
+/// outside, has no fields.
+IdVector<MaterialId, MaterialIntegral> material_integrals(const MeshData& data,
+                                                          const IdVector<MaterialId, double>& volumes);
 
 /// Computes the integrals over a cut mesh whose blocks are the materials, exact to round-off, from the means
 /// in its cells.

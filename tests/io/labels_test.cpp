@@ -102,6 +102,31 @@ TEST(Labels, AreExactInEveryTypeAndFormat) {
   }
 }
 
+TEST(Labels, OfAStackOfPicturesAreExact) {
+  const test::Scratch scratch;
+  // tiff_of() makes pictures of 3 x 2 pixels.
+  for (const int plane : {2, 10}) {
+    const auto base = static_cast<std::uint32_t>(1000 * plane);
+    put_bytes(scratch / fmt::format("l{}.tif", plane),
+              test::tiff_of(std::vector<std::uint32_t>{base, base + 1, 7, 7, 4000000000u, base}, false));
+  }
+  MaterialDataOptions options;
+  options.labels = "l";
+  options.stack_spacing = Vec3{0.5, 1, 2};
+  options.stack_origin = Vec3{10, 20, 30};
+  const MultiMaterialData data = read_multi_material_data(scratch / "l*.tif", options);
+  EXPECT_EQ(std::vector<std::string>(data.materials.begin(), data.materials.end()),
+            (std::vector<std::string>{"7", "2000", "2001", "10000", "10001", "4000000000"}));
+  EXPECT_TRUE(data.labels == SiteArray<std::uint16_t>({1, 2, 0, 0, 5, 1, 3, 4, 0, 0, 5, 3}));
+  EXPECT_EQ(data.grid.nodes[2], (std::vector<double>{29, 31, 33}));
+  EXPECT_EQ(data.grid.nodes[0], (std::vector<double>{9.75, 10.25, 10.75, 11.25}));
+  put_bytes(scratch / "l3.tif", test::tiff_of(std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}, false));
+  EXPECT_TRUE(test::says(test::error_of([&] { read_multi_material_data(scratch / "l*.tif", options); }),
+                         "expected 3 x 2 pixels of uint32"));
+  EXPECT_TRUE(test::says(test::error_of([&] { read_multi_material_data(scratch / "none*.tif", options); }),
+                         "none*.tif"));
+}
+
 /// The materials of a file and the notes about it.
 struct Told {
   std::vector<std::string> names, notes;

@@ -282,6 +282,47 @@ TEST(MeshFile, CopiesOfCellsOfOtherPiecesAreLeftOut) {
   EXPECT_EQ(read_mesh_file(scratch / "a.vtu").cell_ends.size(), 6u);
 }
 
+TEST(MeshData, FlatCellsTurnedRoundTheAxisAreRings) {
+  const Scratch scratch;
+  // Two columns of two rectangles, from the axis out to 2 and from 0 up to 1.
+  std::vector<Vec3> points;
+  for (const double y : {0.0, 0.25, 1.0}) {
+    for (const double x : {0.0, 0.5, 2.0}) points.push_back({x, y, 0});
+  }
+  const auto grid = grid_of(points);
+  std::vector<double> of_points;
+  for (const Vec3& p : points) of_points.push_back(p.x);
+  for (const vtkIdType corner : {0, 1, 3, 4}) {
+    const std::array<vtkIdType, 4> ids{corner, corner + 1, corner + 4, corner + 3};
+    grid->InsertNextCell(VTK_QUAD, 4, ids.data());
+  }
+  add_values(*grid->GetCellData(), "Volume Fraction for oil", {1, 0, 0, 0.5});
+  add_values(*grid->GetCellData(), "Volume Fraction for air", {0, 1, 1, 0.5});
+  add_values(*grid->GetPointData(), "r", of_points);
+  write<vtkXMLUnstructuredGridWriter>(scratch / "flat.vtu", grid.Get());
+  MaterialDataOptions options;
+  EXPECT_TRUE(says(error_of([&] { read_mesh_data(scratch / "flat.vtu", options); }), "--axisymmetric"));
+  options.axisymmetric = true;
+  const MeshData data = read_mesh_data(scratch / "flat.vtu", options);
+  EXPECT_EQ(data.mesh.tangled_cells(), 0u);
+  const double inner = M_PI * 0.25, outer = M_PI * (4 - 0.25);
+  EXPECT_NEAR(data.volumes()[MaterialId(0)], 0.25 * inner + 0.5 * 0.75 * outer, 1e-12);
+  EXPECT_NEAR(data.volumes()[MaterialId(1)], 0.75 * inner + (0.25 + 0.375) * outer, 1e-12);
+  ASSERT_EQ(data.fields.size(), 1u);
+  const double stretch = data.mesh.box().max.x / 2;
+  for (std::size_t p = 0; p < data.mesh.points().size(); ++p) {
+    const Vec3& at = data.mesh.points()[p];
+    EXPECT_NEAR(data.fields[0].values[p] * stretch, std::hypot(at.x, at.z), 1e-9);
+  }
+  points[0].x = -1;
+  const auto wrong = grid_of(points);
+  const std::array<vtkIdType, 4> ids{0, 1, 4, 3};
+  wrong->InsertNextCell(VTK_QUAD, 4, ids.data());
+  write<vtkXMLUnstructuredGridWriter>(scratch / "wrong.vtu", wrong.Get());
+  EXPECT_TRUE(says(error_of([&] { read_mesh_data(scratch / "wrong.vtu", options); }),
+                   "--axisymmetric: expected x of 0 or more, found -1"));
+}
+
 TEST(MeshData, FractionsAndFieldsAreFoundByTheirNames) {
   const auto hexahedra = test::make_hexahedra({2, 2, 2}, [](const Vec3& p) { return 2 * p; });
   const auto grid = hexahedra_grid(hexahedra);

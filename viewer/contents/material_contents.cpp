@@ -25,6 +25,7 @@ MaterialFile material_file(const std::string& path) {
   if (file_extension(path) == ".h5" && is_array_file(path, kHierarchyFormat)) return MaterialFile::kHierarchy;
   switch (kind_by_format(path)) {
     case InputKind::kMesh:
+    case InputKind::kCells:
       return MaterialFile::kMesh;
     case InputKind::kPolygons:
     case InputKind::kNetwork:
@@ -35,6 +36,10 @@ MaterialFile material_file(const std::string& path) {
 }
 
 ResampledMesh read_resampled_mesh(const std::string& path) {
+  if (kind_by_format(path) == InputKind::kCells) {
+    fail("{}: expected a mesh written by adamas resample, found another, of which adamas resample makes one",
+         path);
+  }
   const UnstructuredMesh mesh = read_unstructured_mesh(path);
   if (!is_resampled_mesh(mesh)) fail("{}: expected a mesh written by adamas resample, found another", path);
   return from_unstructured_mesh(mesh, path);

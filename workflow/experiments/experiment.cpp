@@ -116,7 +116,9 @@ void Experiment::load() {
   } else {
     load_last_step();
   }
-  if (!input_.data) fail("{}: expected data on a grid, found interfaces", input_.source.name);
+  if (!input_.data)
+    fail("{}: expected data on a grid, found {}", input_.source.name,
+         input_.cells ? "a mesh of cells" : "interfaces");
   if (options_.generate) input_.data->source = input_.source.name = "input.vtr";
   const MultiMaterialData& data = *input_.data;
   check_shown_interfaces(options_.drawing.shown, data.materials, data.source);

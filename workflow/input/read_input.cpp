@@ -104,6 +104,13 @@ MultiMaterialData read_fields(const InputOptions& options) {
   return data;
 }
 
+/// Returns the given option that only a mesh of cells can have; empty where there is none.
+std::string mesh_option(const MaterialDataOptions& data) {
+  if (data.extrude) return "--extrude";
+  if (data.axisymmetric) return "--axisymmetric";
+  return data.time ? "--time" : "";
+}
+
 /// Returns whether the options or the main file name materials.
 bool has_materials(const InputOptions& options) {
   if (!options.material_option().empty()) return true;
@@ -121,7 +128,8 @@ void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
 }
 
 std::shared_ptr<Input::Contents> load_given_interfaces(const InputOptions& options, Progress& progress) {
-  if (options.data.extrude) wrong_usage("--extrude: expected a mesh of two dimensions as INPUT");
+  if (const std::string option = mesh_option(options.data); !option.empty())
+    wrong_usage("{}: expected a mesh of cells as INPUT", option);
   const bool has_path = !options.path.empty();
   const bool gridded = has_path && input_kind(options.path) == InputKind::kGrid;
   if (has_path && !gridded && input_kind(options.path) != InputKind::kNetwork)
@@ -226,6 +234,13 @@ namespace workflow {
 
 std::optional<RawVolume> raw_volume_of(const InputOptions& options) {
   std::optional<RawVolume> raw = raw_volume(options.raw);
+  if (options.stack) {
+    RawOptions rest = options.raw;
+    rest.spacing = rest.origin = {};
+    if (const std::string option = rest.option(); !option.empty())
+      wrong_usage("{}: expected a file without a header, found a stack of pictures", option);
+    return {};
+  }
   if (const std::string option = options.raw.option(); !raw && !option.empty())
     wrong_usage("{}: expected --dimensions as well", option);
   return raw;
@@ -251,11 +266,15 @@ InterfaceMesh read_given_interfaces(const InputOptions& options) {
 
 MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
   const InputOptions options = needed_main_file(given);
-  if (options.data.extrude)
-    wrong_usage("--extrude: expected a mesh of two dimensions as INPUT, found {}", options.path.string());
+  if (const std::string option = mesh_option(options.data); !option.empty())
+    wrong_usage("{}: expected a mesh of cells as INPUT, found {}", option, options.path.string());
   const std::optional<RawVolume> raw = raw_volume_of(options);
   MaterialDataOptions how = options.data;
   if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
+  if (options.stack) {
+    how.stack_spacing = options.raw.spacing;
+    how.stack_origin = options.raw.origin;
+  }
   check_input_file(options.path);
   const std::string path = options.path.string();
   switch (input_kind(options.path)) {
@@ -322,12 +341,11 @@ LoadedInput load_input(const InputOptions& options, const ReconstructionOptions&
                        Progress& progress, const InputCheck& check) {
   if (has_given_interfaces(with_main_file(options))) refuse_reconstruction(reconstruction);
   const std::shared_ptr<Input::Contents> contents = load_contents(options, progress);
-  if (contents->cells)
-    fail("{}: expected data on a grid or interfaces, found a mesh", contents->cells->source);
   if (check) check_step([&] { check(contents->facts); });
   LoadedInput input;
   input.source = contents->source(reconstruction, progress);
   input.data = std::move(contents->data);
+  input.cells = std::move(contents->cells);
   return input;
 }
 

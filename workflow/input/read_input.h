@@ -30,8 +30,9 @@ std::shared_ptr<Input::Contents> load_contents(const InputOptions& options, Prog
 
 /// An input that is ready to be resampled or cut.
 struct LoadedInput {
-  std::unique_ptr<MultiMaterialData> data;  ///< null for interface meshes alone
-  interfaces::ResamplingSource source;      ///< refers to `data`
+  std::unique_ptr<MultiMaterialData> data;  ///< null for interface meshes alone, and for data on a mesh
+  std::unique_ptr<MeshData> cells;          ///< null unless it is data on a mesh
+  interfaces::ResamplingSource source;      ///< refers to `data` or `cells`
 };
 
 /// A function that throws where options do not fit the input.

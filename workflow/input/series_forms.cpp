@@ -41,7 +41,16 @@ void SeriesForms::check(const std::string& file, const MultiMaterialData& data) 
   check(file, data.materials, data.grid.domain());
   if (data.grid.nodes != grid_.nodes)
     fail("{}: expected the coordinates of the grid of {}, found others", file, first_);
-  const std::vector<FieldInfo> fields = field_infos(data);
+  check_fields(file, field_infos(data));
+}
+
+void SeriesForms::check(const std::string& file, const MeshData& data, const std::vector<FieldInfo>& fields) {
+  if (first_.empty()) fields_ = fields;
+  check(file, data.materials, data.mesh.box());
+  check_fields(file, fields);
+}
+
+void SeriesForms::check_fields(const std::string& file, const std::vector<FieldInfo>& fields) const {
   if (!std::equal(fields.begin(), fields.end(), fields_.begin(), fields_.end(), same_form))
     fail("{}: expected the fields of {} ({}), found {}", file, first_, field_names(fields_),
          field_names(fields));

@@ -65,7 +65,8 @@ ResampledStep SeriesResampler::resample(const LoadedInput& input, const std::str
   std::vector<FieldInfo> fields;
   if (source.fields) fields = source.fields->fields();
   step.fields = summarize(fields);
-  IdVector<MaterialId, MaterialIntegral> of_input = material_integrals(*input.data);
+  IdVector<MaterialId, MaterialIntegral> of_input =
+      input.data ? material_integrals(*input.data) : material_integrals(*input.cells, source.volumes);
   IdVector<MaterialId, MaterialIntegral> of_mesh = material_integrals(mesh);
   std::optional<std::size_t> mass;
   if (!density.empty()) mass = fields[find_field(fields, density, source.name).field].offset;
@@ -89,20 +90,21 @@ ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const Resa
   const auto check = [&options](const InputFacts& found) { check_options(options.resampling, found); };
   InputOptions from = options.input;
   for (std::size_t n = 0; n < steps.size(); ++n) {
-    const std::string& file = steps[n].file;
+    const std::string file = steps[n].name();
     named.set_name(file);
     LoadedInput input;
-    from.path = file;
+    from.path = steps[n].file;
+    from.data.time = steps[n].number;
     if (!left_out.read(n, [&] { input = load_input(from, how, named, check); })) {
       if (actions.leave_out) actions.leave_out(n);
       continue;
     }
-    if (!input.data)
-      fail("{}: expected data on a grid, as all steps of a series are, found interfaces", file);
-    forms.check(file, *input.data);
+    if (!input.data && !input.cells)
+      fail("{}: expected data on a grid or on a mesh, as all steps of a series are, found interfaces", file);
+    std::vector<FieldInfo> fields;
+    if (input.source.fields) fields = input.source.fields->fields();
+    input.data ? forms.check(file, *input.data) : forms.check(file, *input.cells, fields);
     if (series.steps.empty()) {
-      std::vector<FieldInfo> fields;
-      if (input.source.fields) fields = input.source.fields->fields();
       series.fields = summarize(fields);
       series.density = density_field(options.density, fields, file);
     }

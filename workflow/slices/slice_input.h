@@ -9,6 +9,7 @@
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "core/data/interface_mesh.h"
+#include "core/data/mesh_data.h"
 #include "core/data/multi_material_data.h"
 #include "core/geometry/plane.h"
 #include "core/io/multi_material_reader.h"
@@ -30,7 +31,9 @@ struct SliceInput {
   std::unique_ptr<MultiMaterialData> data;
   std::optional<InterfaceMesh> interfaces;  ///< the interfaces of the input
   std::optional<interfaces::ResampledMesh> mesh;
-  std::optional<interfaces::ResamplingSource> network;  ///< given interfaces without data
+  /// Given interfaces without data, or those of data on a mesh of cells.
+  std::optional<interfaces::ResamplingSource> network;
+  std::unique_ptr<MeshData> cells;  ///< what `network` was made of; null unless it was data on a mesh
   /// The grid of samples whose axes are not x, y and z: the data are in its frame.
   std::optional<VolumeGrid> turned;
   std::optional<StepOfSeries> step{};

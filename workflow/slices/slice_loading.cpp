@@ -114,19 +114,13 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
   const bool meshed = kind == InputKind::kMesh;
   if (!meshed && !request.original.empty())
     wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", path);
-  if (kind == InputKind::kNetwork) {
-    LoadedInput read = load_input(options, reconstruction_of(request), progress);
+  if (kind == InputKind::kNetwork || kind == InputKind::kCells) {
+    InputOptions of_mesh = options;
+    if (kind == InputKind::kCells) of_mesh.data.time = request.volume.time;
+    LoadedInput read = load_input(of_mesh, reconstruction_of(request), progress);
     input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
     input.network = std::move(read.source);
-    check(input);
-    return input;
-  }
-  if (kind == InputKind::kCells) {
-    // Its materials are cut, by the interfaces between them; its fields are not.
-    const std::shared_ptr<Input::Contents> contents = load_contents(options, progress);
-    input.network = contents->source(reconstruction_of(request), progress);
-    input.network->fields = nullptr;
-    input.interfaces = network_mesh(*input.network->network, input.network->materials, input.network->name);
+    input.cells = std::move(read.cells);
     check(input);
     return input;
   }

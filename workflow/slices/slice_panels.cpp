@@ -37,6 +37,7 @@ LineSet to_lines(const PlaneFrame& frame, const std::string& name, const Stroke&
 }
 
 std::vector<FieldInfo> fields_of(const SliceInput& input, bool of_data) {
+  if (input.cells) return field_infos(*input.cells);
   if (input.network) return {};
   return of_data ? field_infos(*input.data) : input.mesh->fields;
 }
@@ -155,6 +156,7 @@ std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode,
 CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
   const bool of_data = mode == SliceMode::kInput;
   const auto field = choose_field(input, mode, style);
+  if (input.cells && field) return cross_section(*input.cells, style.plane, field, style.input_cells);
   if (input.network)
     return cross_section(*input.network->network, input.box(), input.materials().size(), style.plane,
                          input.name);

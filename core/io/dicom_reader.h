@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/io/grid_file.h"
+
+namespace adamas::io {
+
+/// Whether a file is one of DICOM, by its first bytes.
+bool is_dicom_file(const std::filesystem::path& path);
+/// Whether a folder holds a file of DICOM.
+bool is_dicom_folder(const std::filesystem::path& path);
+
+/// Reads DICOM in this process: a file with several frames, or the slices of one series that lie in a folder.
+/// Slices are ordered by their places; values are scaled as each slice says. A segmentation becomes labels
+/// with the names of its segments or, if it is of fractions, a volume fraction for each segment. `series`:
+/// the description or the UID of a series if the folder has several; usually empty. Throws Error, with the
+/// file's name, if files differ in size or orientation or lack places, and if a folder has several series.
+GridFile read_dicom(const std::filesystem::path& path, const std::string& series = {});
+
+}  // namespace adamas::io

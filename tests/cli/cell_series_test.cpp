@@ -1,0 +1,89 @@
+// Runs commands on simulations on meshes of cells: series, times, fields in slices, integrals.
+
+#include <fmt/format.h>
+
+#include "tests/cli/program.h"
+#include "tests/support/foam_case.h"
+#include "tests/support/hexahedra.h"
+
+namespace adamas {
+
+namespace {
+
+/// A case of three times: water rises by a layer of cells from one to the next.
+class CellSeries : public test::ProgramTest {
+ protected:
+  CellSeries() {
+    const PolyhedralMesh mesh =
+        test::to_mesh(test::make_hexahedra({4, 4, 6}, [](const Vec3& p) { return test::jittered(p, 0.02); }));
+    test::write_foam_case(folder(), mesh);
+    for (std::size_t step = 0; step < 3; ++step) {
+      std::vector<double> water, pressure;
+      for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+        water.push_back(c / 16 <= step ? 1 : c / 16 == step + 1 ? 0.5 : 0);
+        pressure.push_back(mesh.cell_center(c).z);
+      }
+      test::write_foam_field(folder() / fmt::format("{:g}", 0.5 * static_cast<double>(step)), "alpha.water",
+                             water);
+      test::write_foam_field(folder() / fmt::format("{:g}", 0.5 * static_cast<double>(step)), "p", pressure);
+      volumes_.push_back(0);
+      for (std::size_t c = 0; c < mesh.cell_count(); ++c) volumes_.back() += water[c] * mesh.cell_volume(c);
+    }
+  }
+
+  std::vector<double> volumes_;  // of water, per step
+  const std::vector<std::string> what_{"case.foam", "--fraction", "water=alpha.water", "--rest", "air"};
+
+  [[nodiscard]] std::vector<std::string> command(const std::string& name,
+                                                 const std::vector<std::string>& options) const {
+    std::vector<std::string> all{name};
+    all.insert(all.end(), what_.begin(), what_.end());
+    all.insert(all.end(), options.begin(), options.end());
+    return all;
+  }
+};
+
+TEST_F(CellSeries, AllTimesAreResampledWhereTheOutputIsAList) {
+  run_well(command("resample", {"--interface-error", "5%", "-o", "out.pvd", "--json", "run.json"}));
+  EXPECT_EQ(files().count("out_0002.vtu"), 1u);
+  const auto figures = read_json("run.json");
+  ASSERT_EQ(figures["steps"].size(), 3u);
+  for (std::size_t step = 0; step < 3; ++step) {
+    EXPECT_EQ(figures["steps"][step]["time"], 0.5 * static_cast<double>(step));
+    const auto& water = figures["steps"][step]["materials"][0];
+    EXPECT_EQ(water["name"], "water");
+    EXPECT_NEAR(water["volume_input"].get<double>(), volumes_[step], 1e-5);
+    EXPECT_NEAR(water["volume_mesh"].get<double>(), volumes_[step], 0.03);
+  }
+}
+
+TEST_F(CellSeries, OneTimeIsChosenByItsNumber) {
+  run_well(command("resample",
+                   {"--time", "0", "--interface-error", "5%", "-o", "first.vtu", "--json", "run.json"}));
+  EXPECT_NEAR(read_json("run.json")["materials"][0]["volume_input"].get<double>(), volumes_[0], 1e-5);
+  expect_failure(command("resample", {"--time", "3", "--interface-error", "5%", "-o", "none.vtu"}),
+                 {"case.foam", "--time: expected a time from 0 to 2, found 3"});
+  const auto told = run(command("info", {"--time", "1"}));
+  EXPECT_EQ(told.status, 0);
+  EXPECT_NE(told.out.find("3 steps, times from 0 to 1, 0.5 apart; this is number 1"), std::string::npos)
+      << told.out;
+}
+
+TEST_F(CellSeries, FieldsAreCutAndIntegrated) {
+  const auto cut = run(command("slice", {"--plane", "x=0.5", "--field", "p", "-o", "cut.png"}));
+  EXPECT_EQ(cut.status, 0) << cut.err;
+  const auto told = run(command("probe", {"--json", "probe.json", "--time", "2"}));
+  EXPECT_EQ(told.status, 0) << told.err;
+  const auto& water = read_json("probe.json")["materials"][0];
+  EXPECT_NEAR(water["volume"].get<double>(), volumes_[2], 1e-5);
+}
+
+TEST_F(CellSeries, OptionsOfMeshesAreRefusedForGrids) {
+  write_image("grid.nrrd", 3, [](std::size_t i) { return static_cast<float>(i % 2); });
+  expect_wrong_usage(
+      {"resample", "grid.nrrd", "--labels", "grid", "--time", "1", "--interface-error", "5%", "-o", "m.vtu"},
+      {"--time: expected a mesh of cells as INPUT"});
+}
+
+}  // namespace
+}  // namespace adamas
