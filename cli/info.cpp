@@ -440,9 +440,7 @@ Figures print_series(const Options& all, const std::vector<VolumeInputStep>& ste
 void run(const Options& given, Session& session) {
   Options all{needed_main_file(given.input, "a FILE"), given.volume};
   share_raw_options(all.input, all.volume);
-  if (!all.volume.stack && !is_store(all.input.path) && !all.input.path.empty() &&
-      std::filesystem::is_regular_file(all.input.path) && input_kind(all.input.path) == InputKind::kCells)
-    all.input.data.time = std::exchange(all.volume.time, {});
+  share_time(all.input.path, all.input, all.volume);
   session.outputs.protect(all.input.path);
   const std::vector<VolumeInputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "adamas/volume_store.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
 
@@ -121,8 +122,10 @@ void add_reconstruction_options(const Command& command, bool& smooth_labels, Fra
 }
 
 void add_region_names(const Command& command, InputOptions& options) {
-  command.in_group("Input").add_file("--region-names", "FILE",
-                                     "Names of a network's labels, LABEL NAME a line", options.region_names);
+  command.in_group("Input").add_file(
+      "--region-names", "FILE",
+      "Names of labels, of --labels or of a network: LABEL NAME a line, or a table of ITK-SNAP",
+      options.region_names);
 }
 
 void add_interface_options(const Command& command, InputOptions& options) {
@@ -152,11 +155,11 @@ void add_input_options(const Command& command, InputOptions& options, bool& smoo
   command.in_group("Input").add_flag(
       "--stack", "INPUT is a pattern of pictures, one plane in each, as \"labels_*.tif\" (in quotes)",
       options.stack);
-  command.in_group("Input").add_value(
-      "--time", "N",
-      "Of a file of cells with several times (OpenFOAM, ExodusII, CGNS): the number of one, from 0 on "
-      "(default: the last one)",
-      options.data.time, parse_count_from_0);
+  command.in_group("Input").add_value("--time", "N",
+                                      "Of a file of cells with several times (OpenFOAM, ExodusII, CGNS, "
+                                      "Truchas): the number of one, from 0 on "
+                                      "(default: the last one)",
+                                      options.data.time, parse_count_from_0);
   add_raw_options(command, options.raw, "--origin,--first-sample", "a raw file or a stack");
   add_reconstruction_options(command, smooth_labels, fractions);
   add_interface_options(command, options);
@@ -169,6 +172,13 @@ bool names_materials(const InputOptions& options) {
 
 void share_raw_options(InputOptions& input, VolumeInput& volume) {
   if (names_materials(input) && !volume.stack) input.raw = std::exchange(volume.raw, {});
+}
+
+void share_time(const std::filesystem::path& path, InputOptions& input, VolumeInput& volume) {
+  std::error_code unknown;
+  if (!volume.time || volume.stack || !std::filesystem::is_regular_file(path, unknown)) return;
+  if (!is_store(path) && input_kind(path) == InputKind::kCells)
+    input.data.time = std::exchange(volume.time, {});
 }
 
 void protect_inputs(const InputOptions& options, const std::filesystem::path& base, OutputSet& outputs) {

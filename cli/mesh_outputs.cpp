@@ -98,7 +98,7 @@ void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
   command.add_option(
       "--cut-mesh", "FILE",
       "The mesh cut along its interfaces, for solvers: .vtu (with the faces between bodies beside it, "
-      "in FILE-faces.vtp), .msh (Gmsh) or .exo (ExodusII)",
+      "in FILE-faces.vtp), .vtkhdf, .msh (Gmsh) or .exo (ExodusII)",
       output.file);
   command.add_value("--cut-error", "E|E%",
                     "How far the cut mesh's faces between materials may be from the mesh's interfaces: a "
@@ -121,7 +121,7 @@ std::string CutMeshOutput::faces() const {
 }
 
 void CutMeshOutput::declare(OutputSet& outputs) const {
-  outputs.declare("--cut-mesh", file, {".vtu", ".msh", ".exo"});
+  outputs.declare("--cut-mesh", file, {".vtu", ".vtkhdf", ".msh", ".exo"});
   outputs.declare("--cut-mesh", faces());
   if (file.empty() && options.split_bodies)
     wrong_usage("--split-bodies: expected --cut-mesh FILE with it, found none");
@@ -130,7 +130,7 @@ void CutMeshOutput::declare(OutputSet& outputs) const {
 
 void MeshOutputs::declare(OutputSet& outputs) const {
   picture.check();
-  outputs.declare("-o", mesh, {".vtu"});
+  outputs.declare("-o", mesh, {".vtu", ".vtkhdf"});
   outputs.declare("--interfaces-out", interfaces, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   cut.declare(outputs);
   outputs.declare("--ledger", ledger, {".csv"});
@@ -138,7 +138,9 @@ void MeshOutputs::declare(OutputSet& outputs) const {
 }
 
 void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool series) {
-  command.add_option("-o,--output", "FILE", series ? "The mesh: .vtu; of a series .pvd" : "The mesh: .vtu",
+  command.add_option("-o,--output", "FILE",
+                     series ? "The mesh: .vtu, or .vtkhdf for other programs; of a series .pvd"
+                            : "The mesh: .vtu, or .vtkhdf for other programs",
                      outputs.mesh);
   command.add_option("--interfaces-out", "FILE",
                      "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec",

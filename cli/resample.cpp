@@ -249,6 +249,7 @@ std::string single_option(const Options& options) {
   if (!options.outputs.picture.file.empty()) return "--picture";
   if (!options.save.empty()) return "--save";
   if (!options.verifier.empty()) return "--verify-by";
+  if (options.input.data.time) return "--time";
   return options.input.surfaces.empty() ? options.input.interface_option() : "--interface";
 }
 
@@ -303,6 +304,8 @@ AdaptiveMesh resample_input(const Options& options, Console& console) {
 
 void run(Options& options, Session& session) {
   options.input.memory = begin_memory_limit(options.memory, session);
+  if (options.input.stack && options.inputs.size() > 1)
+    wrong_usage("--stack: expected one pattern in quotes, found {} inputs", options.inputs.size());
   std::vector<SeriesEntry> steps;
   if (!options.input.stack) steps = series_steps(options.inputs);
   // A file of cells with several times is a series where one is asked for.
@@ -311,6 +314,8 @@ void run(Options& options, Session& session) {
       !options.input.data.time)
     steps = mesh_steps(options.inputs.front());
   if (!steps.empty()) return run_series(options, steps, session);
+  if (as_series && options.inputs.size() == 1 && input_kind(options.inputs.front()) == InputKind::kCells)
+    fail("{}: expected several times for a series, found one", options.inputs.front());
   if (const std::string option = series_option(options); !option.empty())
     wrong_usage("{}: expected a series (a .pvd, several files, or a file of cells with several times)",
                 option);

@@ -40,6 +40,7 @@ Plane wanted_plane(const Options& options) {
 SliceRequest to_slice_request(const Options& options) {
   SliceRequest request = options.request;
   share_raw_options(request.input, request.volume);
+  if (request.inputs.size() == 1) share_time(request.inputs[0], request.input, request.volume);
   request.plane = wanted_plane(options);
   if (options.draw_cells && options.no_draw_cells)
     wrong_usage("--draw-cells and --no-draw-cells: expected one of them");

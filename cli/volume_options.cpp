@@ -58,7 +58,7 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
   group.add_value(
       "--time", "N",
       "Of a file with several times (NIfTI, HDF5 or .npy along four axes, a stack of MRC; cells of "
-      "OpenFOAM, ExodusII or CGNS): the "
+      "OpenFOAM, ExodusII, CGNS or Truchas): the "
       "number of one, from 0 on",
       input.time, parse_count_from_0);
   command.add_file("--scratch", "FOLDER",

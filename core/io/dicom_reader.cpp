@@ -4,36 +4,40 @@
 #include <gdcmImageReader.h>
 #include <gdcmReader.h>
 #include <gdcmSequenceOfItems.h>
-#include <gdcmStringFilter.h>
 #include <gdcmTrace.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <map>
-#include <span>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/io/file_handle.h"
 #include "core/io/grid_axes.h"
-#include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
+#include "core/io/material_arrays.h"
 #include "core/io/volume_import.h"
 
 namespace adamas::io {
 
 namespace {
 
-const gdcm::Tag kSopClass(0x0008, 0x0016), kSeriesText(0x0008, 0x103e), kSeries(0x0020, 0x000e),
-    kPosition(0x0020, 0x0032), kPerFrame(0x5200, 0x9230), kPlanePosition(0x0020, 0x9113),
-    kSegmentOfFrame(0x0062, 0x000a), kReferencedSegment(0x0062, 0x000b), kSegments(0x0062, 0x0002),
-    kSegmentNumber(0x0062, 0x0004), kSegmentLabel(0x0062, 0x0005), kSegmentationType(0x0062, 0x0001),
-    kMostFraction(0x0062, 0x000e);
+const gdcm::Tag kSopClass(0x0008, 0x0016), kSeriesText(0x0008, 0x103e), kPixelSpacing(0x0028, 0x0030),
+    kDetectorSpacing(0x0018, 0x1164), kSliceSpacing(0x0018, 0x0088), kSeries(0x0020, 0x000e),
+    kPosition(0x0020, 0x0032), kOrientation(0x0020, 0x0037), kOffsets(0x3004, 0x000c),
+    kIntercept(0x0028, 0x1052), kSlope(0x0028, 0x1053), kPixels(0x7fe0, 0x0010), kShared(0x5200, 0x9229),
+    kPerFrame(0x5200, 0x9230), kPlanePosition(0x0020, 0x9113), kPlaneOrientation(0x0020, 0x9116),
+    kMeasures(0x0028, 0x9110), kTransformation(0x0028, 0x9145), kSegmentOfFrame(0x0062, 0x000a),
+    kReferencedSegment(0x0062, 0x000b), kSegments(0x0062, 0x0002), kSegmentNumber(0x0062, 0x0004),
+    kSegmentLabel(0x0062, 0x0005), kSegmentationType(0x0062, 0x0001), kMostFraction(0x0062, 0x000e),
+    kStorage(0x0002, 0x0002);
 constexpr const char* kSegmentationStorage = "1.2.840.10008.5.1.4.1.1.66.4";
 constexpr const char* kDirectoryStorage = "1.2.840.10008.1.3.10";
 
@@ -69,13 +73,65 @@ const gdcm::DataSet* first_item(const gdcm::DataSet& set, const gdcm::Tag& tag) 
   return items != nullptr && items->GetNumberOfItems() > 0 ? &items->GetItem(1).GetNestedDataSet() : nullptr;
 }
 
+/// The numbers of an element that has them as text, between backslashes; empty if one is none.
+std::vector<double> numbers_of(const gdcm::DataSet& set, const gdcm::Tag& tag) {
+  std::vector<double> numbers;
+  std::istringstream text(text_of(set, tag));
+  for (std::string item; std::getline(text, item, '\\');) {
+    std::istringstream word(item);
+    double number = 0;
+    if (!(word >> number) || !std::isfinite(number)) return {};
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+/// The pixels of a file, of all frames.
+struct Pixels {
+  std::vector<char> bytes;
+  gdcm::PixelFormat::ScalarType type = gdcm::PixelFormat::UNKNOWN;
+  std::size_t count = 0;
+};
+
+/// What headers say of a picture: that of the file, and those of all frames and of each frame.
+struct Frame {
+  std::optional<Vec3> position, row, column;
+  std::optional<std::array<double, 2>> spacing;  ///< of columns, and of rows
+  double slope = 1, intercept = 0;
+  int segment = -1;  ///< the number of the segment that it is of
+
+  /// Takes the elements of a data set.
+  void take(const gdcm::DataSet& set) {
+    if (const auto p = numbers_of(set, kPosition); p.size() == 3) position = Vec3{p[0], p[1], p[2]};
+    if (const auto o = numbers_of(set, kOrientation); o.size() == 6) {
+      row = Vec3{o[0], o[1], o[2]};
+      column = Vec3{o[3], o[4], o[5]};
+    }
+    // The first number is the distance of rows.
+    for (const gdcm::Tag& tag : {kDetectorSpacing, kPixelSpacing}) {
+      if (const auto s = numbers_of(set, tag); s.size() == 2) spacing = std::array{s[1], s[0]};
+    }
+    if (const auto s = numbers_of(set, kSlope); s.size() == 1) slope = s[0];
+    if (const auto i = numbers_of(set, kIntercept); i.size() == 1) intercept = i[0];
+  }
+
+  /// Takes what the sequences of frames say.
+  void take_groups(const gdcm::DataSet& groups) {
+    for (const gdcm::Tag& tag : {kPlanePosition, kPlaneOrientation, kMeasures, kTransformation}) {
+      if (const gdcm::DataSet* own = first_item(groups, tag)) take(*own);
+    }
+    if (const gdcm::DataSet* own = first_item(groups, kSegmentOfFrame))
+      segment = number_of(*own, kReferencedSegment);
+  }
+};
+
 /// A picture of a file, or one of its frames.
 struct Slice {
   std::string file;
+  Frame frame;
   Vec3 origin;
-  bool whole = true;           ///< whether its values are whole numbers
-  std::vector<double> values;  ///< one row behind the other
-  int segment = -1;            ///< the number of the segment that it is of
+  std::shared_ptr<const Pixels> pixels;
+  std::size_t first = 0;  ///< the first of its pixels among those of the file
 };
 
 /// Reads the slices of files, which have to be of one kind.
@@ -87,25 +143,26 @@ class SliceReader {
     if (!reader.Read()) fail("{}: expected a picture of DICOM, found something else", path);
     const gdcm::Image& image = reader.GetImage();
     const gdcm::DataSet& header = reader.GetFile().GetDataSet();
-    take_kind(path, image, header);
-    const std::vector<double> values = values_of(path, image);
-    const std::size_t frames = image.GetNumberOfDimensions() > 2 ? image.GetDimension(2) : 1,
-                      size = size_[0] * size_[1];
+    if (image.GetPixelFormat().GetSamplesPerPixel() != 1)
+      fail("{}: expected one value per pixel, found {}", path, image.GetPixelFormat().GetSamplesPerPixel());
+    const std::size_t frames = image.GetNumberOfDimensions() > 2 ? image.GetDimension(2) : 1;
+    Frame whole;
+    // What is no rescaling in the header, such as the scale of a dose.
+    whole.slope = image.GetSlope();
+    whole.intercept = image.GetIntercept();
+    whole.take(header);
+    if (const gdcm::DataSet* shared = first_item(header, kShared)) whole.take_groups(*shared);
+    const auto pixels = std::make_shared<const Pixels>(pixels_of(path, image, header));
     const auto per_frame = items_of(header, kPerFrame);
-    const Vec3 first{image.GetOrigin(0), image.GetOrigin(1), image.GetOrigin(2)};
     for (std::size_t f = 0; f < frames; ++f) {
-      Slice slice;
-      slice.file = path;
-      slice.origin = first + static_cast<double>(f) * image.GetSpacing(2) * normal_;
-      slice.values.assign(values.begin() + static_cast<std::ptrdiff_t>(f * size),
-                          values.begin() + static_cast<std::ptrdiff_t>((f + 1) * size));
-      slice.whole = std::ranges::all_of(slice.values, [](double v) { return v == std::round(v); });
+      Slice slice{path, whole, {}, pixels, f * image.GetDimension(0) * image.GetDimension(1)};
       if (per_frame != nullptr && f < per_frame->GetNumberOfItems())
-        take_frame(per_frame->GetItem(f + 1).GetNestedDataSet(), slice);
+        slice.frame.take_groups(per_frame->GetItem(f + 1).GetNestedDataSet());
+      take_kind(slice, {image.GetDimension(0), image.GetDimension(1)}, header);
+      slice.origin =
+          *slice.frame.position + offset_of(path, header, frames, f, per_frame != nullptr) * normal_;
       slices_.push_back(std::move(slice));
     }
-    if (frames > 1 && per_frame == nullptr && !(image.GetSpacing(2) > 0))
-      fail("{}: expected frames with their places, found none", path);
     if (is_segmentation_) take_segments(header);
   }
 
@@ -128,100 +185,130 @@ class SliceReader {
 
  private:
   /// Takes the size, the orientation and the distances of the first picture, and compares others.
-  void take_kind(const std::string& path, const gdcm::Image& image, const gdcm::DataSet& header) {
-    const std::array<std::size_t, 2> size{image.GetDimension(0), image.GetDimension(1)};
-    const double* cosines = image.GetDirectionCosines();
-    const Vec3 row{cosines[0], cosines[1], cosines[2]}, column{cosines[3], cosines[4], cosines[5]};
-    if (image.GetPixelFormat().GetSamplesPerPixel() != 1)
-      fail("{}: expected one value per pixel, found {}", path, image.GetPixelFormat().GetSamplesPerPixel());
+  void take_kind(const Slice& slice, const std::array<std::size_t, 2>& size, const gdcm::DataSet& header) {
+    const std::string& path = slice.file;
+    const Frame& frame = slice.frame;
+    if (!frame.position || !frame.row)
+      fail("{}: expected a picture with its place and its orientation in space, found none", path);
+    if (!frame.spacing || !((*frame.spacing)[0] > 0 && (*frame.spacing)[1] > 0))
+      fail("{}: expected a picture with the distances of its pixels, found none", path);
     if (slices_.empty()) {
       first_file_ = path;
       size_ = size;
-      spacing_ = {image.GetSpacing(0), image.GetSpacing(1)};
-      row_ = row;
-      column_ = column;
-      normal_ = normalized(cross(row, column));
+      spacing_ = *frame.spacing;
+      row_ = *frame.row;
+      column_ = *frame.column;
+      normal_ = normalized(cross(row_, column_));
       is_segmentation_ = text_of(header, kSopClass) == kSegmentationStorage;
-      if (!is_finite(normal_) || !(spacing_[0] > 0 && spacing_[1] > 0))
-        fail("{}: expected the orientation of a picture and the distances of its pixels, found none", path);
+      if (!(std::abs(norm(row_) - 1) <= 1e-3 && std::abs(norm(column_) - 1) <= 1e-3 &&
+            std::abs(dot(row_, column_)) <= 1e-3))
+        fail("{}: expected rows and columns at right angles, found others", path);
     }
     if (size != size_)
       fail("{}: expected {} x {} pixels as in {}, found {} x {}", path, size_[0], size_[1], first_file_,
            size[0], size[1]);
-    if (!(distance(row, row_) <= kParallelAxes && distance(column, column_) <= kParallelAxes))
+    if (!(distance(*frame.row, row_) <= kParallelAxes && distance(*frame.column, column_) <= kParallelAxes))
       fail("{}: expected the orientation of {}, found another", path, first_file_);
-    if (!(std::abs(image.GetSpacing(0) - spacing_[0]) <= kParallelAxes * spacing_[0] &&
-          std::abs(image.GetSpacing(1) - spacing_[1]) <= kParallelAxes * spacing_[1]))
-      fail("{}: expected pixels of {:g} x {:g} as in {}, found {:g} x {:g}", path, spacing_[0], spacing_[1],
-           first_file_, image.GetSpacing(0), image.GetSpacing(1));
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      if (!(std::abs((*frame.spacing)[axis] - spacing_[axis]) <= kParallelAxes * spacing_[axis]))
+        fail("{}: expected pixels {:g} apart as in {}, found {:g}", path, spacing_[axis], first_file_,
+             (*frame.spacing)[axis]);
+    }
   }
 
-  /// Reads all pixels of a file and scales them.
-  static std::vector<double> values_of(const std::string& path, const gdcm::Image& image) {
-    const unsigned long bytes = image.GetBufferLength();
-    std::vector<char> buffer(bytes);
-    if (bytes == 0 || !image.GetBuffer(buffer.data()))
+  /// How far a frame lies from the place that the file states, along the normal.
+  static double offset_of(const std::string& path, const gdcm::DataSet& header, std::size_t frames,
+                          std::size_t frame, bool has_places) {
+    if (frames < 2 || has_places) return 0;
+    if (const std::vector<double> offsets = numbers_of(header, kOffsets); offsets.size() == frames)
+      return offsets[frame] - offsets[0];
+    const std::vector<double> step = numbers_of(header, kSliceSpacing);
+    if (step.size() == 1 && step[0] > 0) return step[0] * static_cast<double>(frame);
+    fail("{}: expected frames with their places in space, found none", path);
+  }
+
+  /// Reads all pixels of a file.
+  static Pixels pixels_of(const std::string& path, const gdcm::Image& image, const gdcm::DataSet& header) {
+    constexpr std::size_t kGreatestExpansion = 2000;
+    Pixels pixels;
+    pixels.type = image.GetPixelFormat().GetScalarType();
+    pixels.count = 1;
+    for (unsigned axis = 0; axis < image.GetNumberOfDimensions(); ++axis)
+      pixels.count *= image.GetDimension(axis);
+    const std::size_t bytes = image.GetBufferLength();
+    // GDCM takes pixels that a file lacks for zeros.
+    const gdcm::ByteValue* raw =
+        header.FindDataElement(kPixels) ? header.GetDataElement(kPixels).GetByteValue() : nullptr;
+    if (raw != nullptr ? raw->GetLength() < bytes : bytes > kGreatestExpansion * check_input_file(path))
+      fail("{}: expected {} bytes of pixels, found {}", path, bytes,
+           raw != nullptr ? std::to_string(raw->GetLength()) : "a file that cannot hold them");
+    pixels.bytes.resize(bytes);
+    if (bytes == 0 || bytes < bytes_of(pixels.type, pixels.count) || !image.GetBuffer(pixels.bytes.data()))
       fail("{}: expected pixels that can be unpacked, found others", path);
-    std::size_t count = 1;
-    for (unsigned axis = 0; axis < image.GetNumberOfDimensions(); ++axis) count *= image.GetDimension(axis);
-    std::vector<double> values(count);
-    const auto convert = [&]<class Stored>(Stored) {
-      if (bytes < count * sizeof(Stored)) fail("{}: expected {} pixels, found fewer", path, count);
-      for (std::size_t i = 0; i < count; ++i) {
-        Stored stored;
-        std::memcpy(&stored, buffer.data() + i * sizeof(Stored), sizeof(Stored));
-        values[i] = image.GetSlope() * static_cast<double>(stored) + image.GetIntercept();
-      }
-    };
-    switch (image.GetPixelFormat().GetScalarType()) {
-      case gdcm::PixelFormat::SINGLEBIT:
-        if (bytes < (count + 7) / 8) fail("{}: expected {} pixels, found fewer", path, count);
-        for (std::size_t i = 0; i < count; ++i)
-          values[i] = (static_cast<unsigned char>(buffer[i / 8]) >> (i % 8)) & 1;
-        break;
+    return pixels;
+  }
+
+  /// The bytes of so many pixels. Types that are no numbers have endless ones.
+  static std::size_t bytes_of(gdcm::PixelFormat::ScalarType type, std::size_t count) {
+    if (type == gdcm::PixelFormat::SINGLEBIT) return (count + 7) / 8;
+    std::size_t size = 0;
+    const bool known = visit(type, [&size]<class Stored>(Stored) { size = sizeof(Stored); });
+    return known ? count * size : std::numeric_limits<std::size_t>::max();
+  }
+
+  /// Calls `use` with a number of a type; returns whether there is such a type.
+  template <class Use>
+  static bool visit(gdcm::PixelFormat::ScalarType type, const Use& use) {
+    switch (type) {
       case gdcm::PixelFormat::UINT8:
-        convert(std::uint8_t{});
-        break;
+        use(std::uint8_t{});
+        return true;
       case gdcm::PixelFormat::INT8:
-        convert(std::int8_t{});
-        break;
+        use(std::int8_t{});
+        return true;
       case gdcm::PixelFormat::UINT12:
       case gdcm::PixelFormat::UINT16:
-        convert(std::uint16_t{});
-        break;
+        use(std::uint16_t{});
+        return true;
       case gdcm::PixelFormat::INT12:
       case gdcm::PixelFormat::INT16:
-        convert(std::int16_t{});
-        break;
+        use(std::int16_t{});
+        return true;
       case gdcm::PixelFormat::UINT32:
-        convert(std::uint32_t{});
-        break;
+        use(std::uint32_t{});
+        return true;
       case gdcm::PixelFormat::INT32:
-        convert(std::int32_t{});
-        break;
+        use(std::int32_t{});
+        return true;
       case gdcm::PixelFormat::FLOAT32:
-        convert(float{});
-        break;
+        use(float{});
+        return true;
       case gdcm::PixelFormat::FLOAT64:
-        convert(double{});
-        break;
+        use(double{});
+        return true;
       default:
-        fail("{}: expected pixels of 1 to 32 bits, found {}", path,
-             image.GetPixelFormat().GetScalarTypeAsString());
+        return false;
     }
-    return values;
   }
 
-  /// Takes the place and the segment that the header of a frame states.
-  static void take_frame(const gdcm::DataSet& header, Slice& slice) {
-    if (const gdcm::DataSet* place = first_item(header, kPlanePosition)) {
-      std::istringstream text(text_of(*place, kPosition));
-      Vec3 p;
-      char separator = 0;
-      if (text >> p.x >> separator >> p.y >> separator >> p.z) slice.origin = p;
+  /// Calls `use` with the number and the scaled value of each pixel of a slice.
+  template <class Use>
+  void for_each_pixel(const Slice& slice, const Use& use) const {
+    const std::size_t count = size_[0] * size_[1];
+    const char* bytes = slice.pixels->bytes.data();
+    if (slice.pixels->type == gdcm::PixelFormat::SINGLEBIT) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t at = slice.first + i;
+        use(i, static_cast<double>((static_cast<unsigned char>(bytes[at / 8]) >> (at % 8)) & 1));
+      }
+      return;
     }
-    if (const gdcm::DataSet* segment = first_item(header, kSegmentOfFrame))
-      slice.segment = number_of(*segment, kReferencedSegment);
+    visit(slice.pixels->type, [&]<class Stored>(Stored stored) {
+      for (std::size_t i = 0; i < count; ++i) {
+        std::memcpy(&stored, bytes + (slice.first + i) * sizeof(Stored), sizeof(Stored));
+        use(i, slice.frame.slope * static_cast<double>(stored) + slice.frame.intercept);
+      }
+    });
   }
 
   void take_segments(const gdcm::DataSet& header) {
@@ -288,10 +375,11 @@ class SliceReader {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     bool whole = true;
     for (const Slice& slice : slices_) {
-      const auto [low, high] = std::ranges::minmax(slice.values);
-      least = std::min(least, low);
-      most = std::max(most, high);
-      whole = whole && slice.whole;
+      for_each_pixel(slice, [&](std::size_t, double value) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+        whole = whole && value == std::round(value);
+      });
     }
     array.type = whole ? type_of(least, most) : "float32";
     array.type == "float32" ? move_values<float>(array) : move_values<std::int32_t>(array);
@@ -304,7 +392,9 @@ class SliceReader {
     std::vector<Number> numbers;
     numbers.reserve(size_[0] * size_[1] * slices_.size());
     for (Slice& slice : slices_) {
-      for (const double v : std::exchange(slice.values, {})) numbers.push_back(static_cast<Number>(v));
+      for_each_pixel(slice,
+                     [&](std::size_t, double value) { numbers.push_back(static_cast<Number>(value)); });
+      slice.pixels.reset();
     }
     array.values = std::move(numbers);
   }
@@ -326,16 +416,17 @@ class SliceReader {
   void add_segments(GridFile& file) {
     const std::size_t plane = size_[0] * size_[1], count = plane * places_.size();
     for (const Slice& slice : slices_) {
-      if (!labels_.contains(slice.segment))
-        fail("{}: expected frames of segments, found one of segment {}", slice.file, slice.segment);
+      if (!labels_.contains(slice.frame.segment))
+        fail("{}: expected frames of segments, found one of segment {}", slice.file, slice.frame.segment);
     }
     if (most_fraction_ == 0) return add_labels(file, plane, count);
     for (const auto& [number, label] : labels_) {
       std::vector<float> values(count, 0.0f);
       for (const Slice& slice : slices_) {
-        if (slice.segment != number) continue;
+        if (slice.frame.segment != number) continue;
         float* to = values.data() + place_of(slice) * plane;
-        for (std::size_t i = 0; i < plane; ++i) to[i] = static_cast<float>(slice.values[i] / most_fraction_);
+        for_each_pixel(
+            slice, [&](std::size_t i, double value) { to[i] = static_cast<float>(value / most_fraction_); });
       }
       GridArray array;
       array.name = "volume fraction " + label;
@@ -350,21 +441,16 @@ class SliceReader {
     std::size_t shared = 0;
     for (const auto& [number, label] : labels_) {
       for (const Slice& slice : slices_) {
-        if (slice.segment != number) continue;
+        if (slice.frame.segment != number) continue;
         std::int32_t* to = values.data() + place_of(slice) * plane;
-        for (std::size_t i = 0; i < plane; ++i) {
-          if (slice.values[i] == 0) continue;
+        for_each_pixel(slice, [&](std::size_t i, double value) {
+          if (value == 0) return;
           if (to[i] != 0) ++shared;
-          to[i] = number;
-        }
+          to[i] = static_cast<std::int32_t>(number);
+        });
       }
     }
-    file.material_names.emplace_back("background");
-    for (const auto& [number, label] : labels_) {
-      while (std::cmp_less(file.material_names.size(), number))
-        file.material_names.push_back(fmt::format("segment {}", file.material_names.size()));
-      file.material_names.push_back(label);
-    }
+    file.material_names = listed_names(labels_);
     if (shared > 0)
       file.remark += fmt::format("{}{} voxels are in several segments, of which the last one has them",
                                  file.remark.empty() ? "" : "; ", shared);
@@ -382,8 +468,8 @@ class SliceReader {
   std::vector<Slice> slices_;
   std::vector<double> places_;  // of the slices along the normal
   bool is_segmentation_ = false;
-  std::map<int, std::string> labels_;  // of the segments
-  int most_fraction_ = 0;              // the number that means 1; 0: segments have no fractions
+  std::map<std::int64_t, std::string> labels_;  // of the segments
+  int most_fraction_ = 0;                       // the number that means 1; 0: segments have no fractions
 };
 
 /// The files of a series in a folder.
@@ -404,10 +490,10 @@ std::map<std::string, Series> series_in(const std::filesystem::path& folder, std
   for (const std::string& file : files) {
     gdcm::Reader reader;
     reader.SetFileName(file.c_str());
-    if (!reader.ReadSelectedTags({gdcm::Tag(0x0002, 0x0002), kSopClass, kSeriesText, kSeries}))
+    if (!reader.ReadSelectedTags({kStorage, kSopClass, kSeriesText, kSeries}))
       fail("{}: expected a file of DICOM, found a damaged one", file);
     const gdcm::DataSet& header = reader.GetFile().GetDataSet();
-    if (text_of(reader.GetFile().GetHeader(), gdcm::Tag(0x0002, 0x0002)) == kDirectoryStorage) continue;
+    if (text_of(reader.GetFile().GetHeader(), kStorage) == kDirectoryStorage) continue;
     Series& own = series[text_of(header, kSeries)];
     own.text = text_of(header, kSeriesText);
     own.files.push_back(file);
@@ -432,9 +518,11 @@ Series choose(const std::string& name, std::map<std::string, Series> series, con
 }  // namespace
 
 bool is_dicom_file(const std::filesystem::path& path) {
+  // Other files of a folder may be empty, unreadable or gone.
   std::array<char, 132> bytes{};
-  const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
-  return size == bytes.size() && std::string_view(bytes.data() + 128, 4) == "DICM";
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(bytes.data(), bytes.size());
+  return stream.good() && std::string_view(bytes.data() + 128, 4) == "DICM";
 }
 
 bool is_dicom_folder(const std::filesystem::path& path) {

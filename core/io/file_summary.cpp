@@ -140,7 +140,7 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
     case InputKind::kPolygons:
       return summarize_mesh(path);
     case InputKind::kCells:
-      if (file_extension(path) != ".vtu") return summarize_cells(path, time);
+      if (file_extension(path) != ".vtu" || time) return summarize_cells(path, time);
       try {
         return summarize_mesh(path);
       } catch (const Cancelled&) {

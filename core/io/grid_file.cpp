@@ -11,6 +11,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
 #include "core/io/sent_grids.h"
+#include "core/io/volume_import.h"
 #include "core/io/volume_stack.h"
 
 namespace adamas::io {
@@ -32,15 +33,6 @@ void check_sizes(const std::string& name, const GridFile& file) {
   }
 }
 
-/// Sets the distances of samples, and the place of the first one.
-void place_samples(const Vec3& spacing, const Vec3& origin, GridFile& file) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (auto* places : {&file.nodes, &file.faces}) {
-      for (double& x : (*places)[static_cast<std::size_t>(axis)]) x = origin[axis] + spacing[axis] * x;
-    }
-  }
-}
-
 /// The part of a pattern before its first placeholder, as "labels" of "labels_*.tif"; else all of its name.
 std::string stack_name(const std::filesystem::path& pattern) {
   std::string name = file_stem(pattern);
@@ -51,12 +43,20 @@ std::string stack_name(const std::filesystem::path& pattern) {
 }
 
 GridFile read_stack(const std::filesystem::path& pattern, const GridReading& reading) {
-  ReaderRequest request{LibraryReader::kGrid, pattern.string(), check_input_file(pattern)};
-  for (const auto& file : match_stack(pattern)) request.paths.push_back(file.string());
-  auto file = receive_from_child<GridFile>(request);
-  if (file.arrays.size() == 1) file.arrays[0].name = stack_name(pattern);
-  place_samples(reading.stack_spacing, reading.stack_origin, file);
-  return file;
+  ImageHeader header;
+  header.kind = "stack of pictures";
+  header.name = pattern.string();
+  header.spacing = reading.stack_spacing;
+  header.axes.origin = reading.stack_origin;
+  for (int axis = 0; axis < 3; ++axis)
+    header.axes.directions[static_cast<std::size_t>(axis)][axis] = reading.stack_spacing[axis];
+  header.centers.emplace();
+  ImageArray array;
+  array.name = stack_name(pattern);
+  array.source = import_stack(match_stack(pattern), {1, 1, 1}, {}, {}, SilentProgress::instance());
+  header.dimensions = array.source.grid.dimensions;
+  header.arrays.push_back(std::move(array));
+  return grid_of(header, pattern, reading);
 }
 
 GridFile read_by_format(const std::filesystem::path& path, const GridReading& reading) {
@@ -69,19 +69,6 @@ GridFile read_by_format(const std::filesystem::path& path, const GridReading& re
          path.string(), list_grid_endings("or"));
   return format->read_grid != nullptr ? format->read_grid(path)
                                       : grid_of(format->read_header(path), path, reading);
-}
-
-/// Appends the numbers of an array to those of another one; where their types differ, all become doubles.
-void append_numbers(const GridArray& from, GridArray& to) {
-  if (from.values.index() != to.values.index()) {
-    to.values = std::visit([](const auto& v) { return std::vector<double>(v.begin(), v.end()); }, to.values);
-  }
-  const auto append = [](auto& all, const auto& own) {
-    all.reserve(all.size() + own.size());
-    for (const auto number : own)
-      all.push_back(static_cast<typename std::decay_t<decltype(all)>::value_type>(number));
-  };
-  std::visit(append, to.values, from.values);
 }
 
 }  // namespace
@@ -160,35 +147,8 @@ std::string names_of(const std::vector<GridArray>& arrays) {
 
 void send_grid(const ReaderRequest& request, ByteSink& sink) {
   const std::filesystem::path path = request.paths.front();
-  if (request.paths.size() > 1) return sink.put(read_picture_stack(request.paths));
   sink.put(request.reader == LibraryReader::kHdf5Grid ? read_hdf5_grid(path)
                                                       : read_grid_in_process(path, request.array));
-}
-
-GridFile read_picture_stack(const std::vector<std::string>& paths) {
-  GridFile stack = read_grid_in_process(paths.front());
-  stack.kind += " stack";
-  const auto single = [&paths](const std::string& path, const GridFile& file) {
-    if (file.arrays.size() != 1 || file.nodes[2].size() != 1 || !file.has_samples())
-      fail("{}: expected a picture of one plane, as {}, found {} planes", path, paths.front(),
-           file.nodes[2].size());
-  };
-  single(paths.front(), stack);
-  GridArray& all = stack.arrays.front();
-  for (std::size_t n = 1; n < paths.size(); ++n) {
-    const GridFile file = read_grid_in_process(paths[n]);
-    single(paths[n], file);
-    const GridArray& own = file.arrays.front();
-    if (file.nodes[0].size() != stack.nodes[0].size() || file.nodes[1].size() != stack.nodes[1].size() ||
-        own.type != all.type || own.components != all.components)
-      fail("{}: expected {} x {} pixels of {} as in {}, found {} x {} of {}", paths[n], stack.nodes[0].size(),
-           stack.nodes[1].size(), all.type, paths.front(), file.nodes[0].size(), file.nodes[1].size(),
-           own.type);
-    append_numbers(own, all);
-    stack.nodes[2].push_back(static_cast<double>(n));
-    stack.faces[2].push_back(static_cast<double>(n) + 0.5);
-  }
-  return stack;
 }
 
 GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series) {

@@ -121,8 +121,6 @@ GridFile read_grid_file(const std::filesystem::path& path, const GridReading& re
 GridFile read_grid_by_library(const std::filesystem::path& path);
 /// Reads a file as read_grid_by_library does, but in this process. `series`: as for read_dicom().
 GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series = {});
-/// Reads pictures of one size in this process, one plane in each: the first at z = 0, rows as stored.
-GridFile read_picture_stack(const std::vector<std::string>& paths);
 /// Reads a file of VTK, TIFF or a picture in this process.
 GridFile read_grid_with_vtk(const std::filesystem::path& path);
 

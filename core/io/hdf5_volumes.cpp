@@ -32,19 +32,6 @@ struct Listing {
   bool too_deep;
 };
 
-/// The type in which numbers of an HDF5 type are passed on; empty if they are no numbers.
-std::optional<StoredType> hdf5_stored_type(hid_t type) {
-  const std::size_t bytes = H5Tget_size(type);
-  const H5T_class_t kind = H5Tget_class(type);
-  if (kind == H5T_FLOAT) return bytes <= 4 ? StoredType::kFloat32 : StoredType::kFloat64;
-  if (kind != H5T_INTEGER) return {};
-  const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
-  if (bytes == 1) return is_signed ? StoredType::kInt8 : StoredType::kUint8;
-  if (bytes == 2) return is_signed ? StoredType::kInt16 : StoredType::kUint16;
-  if (bytes == 4) return is_signed ? StoredType::kInt32 : StoredType::kUint32;
-  return is_signed ? StoredType::kInt64 : StoredType::kUint64;
-}
-
 /// The name that HDF5 has for a numeric type in memory.
 hid_t hdf5_memory_type(StoredType type) {
   const std::array<hid_t, 10> types{H5T_NATIVE_INT8,  H5T_NATIVE_UINT8,  H5T_NATIVE_INT16, H5T_NATIVE_UINT16,
@@ -64,13 +51,6 @@ int hdf5_axes(hid_t place, const char* name) {
 }
 
 constexpr std::size_t kMostHdf5Listed = 8;
-
-Hdf5Handle open_hdf5(const std::string& name) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const hid_t file = H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) fail("{}: expected a whole HDF5 file, found something else", name);
-  return {file, H5Fclose};
-}
 
 /// The names of at most `most` numeric data sets with so many axes.
 std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most = kMostHdf5Listed) {
@@ -126,20 +106,6 @@ Vec3 hdf5_spacing(hid_t set) {
   const bool good =
       read && std::all_of(zyx.begin(), zyx.end(), [](double s) { return s > 0 && std::isfinite(s); });
   return good ? Vec3{zyx[2], zyx[1], zyx[0]} : Vec3{1, 1, 1};
-}
-
-/// The attribute `time` of a data set as numbers; empty if it has none, or one that is no number.
-std::vector<double> hdf5_times(hid_t set) {
-  constexpr hssize_t kMost = hssize_t{1} << 24;
-  if (H5Aexists(set, "time") <= 0) return {};
-  const Hdf5Handle attribute(H5Aopen(set, "time", H5P_DEFAULT), H5Aclose);
-  const Hdf5Handle space(attribute.good() ? H5Aget_space(attribute.id()) : -1, H5Sclose);
-  const Hdf5Handle type(attribute.good() ? H5Aget_type(attribute.id()) : -1, H5Tclose);
-  const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.id()) : 0;
-  if (!type.good() || !hdf5_stored_type(type.id()) || count < 1 || count > kMost) return {};
-  std::vector<double> times(static_cast<std::size_t>(count));
-  if (H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, times.data()) < 0) return {};
-  return times;
 }
 
 /// Reads a data set, or one time of it, in the child.
@@ -247,7 +213,8 @@ InputFormat hdf5_format() {
           .find_volume = import_hdf5,
           .find_series = find_hdf5_series,
           .several_arrays = true,
-          .several_times = true};
+          .several_times = true,
+          .may_be_cells = true};
 }
 
 VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options,

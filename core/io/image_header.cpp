@@ -13,6 +13,7 @@
 #include "core/io/grid_numbers.h"
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
+#include "core/io/material_arrays.h"
 #include "core/io/volume_reader.h"
 #include "core/io/volume_unpacking.h"
 #include "core/io/whole_runs.h"
@@ -241,6 +242,7 @@ GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path, c
       if (array.name.empty() && header.arrays.size() == 1) file.arrays.back().name = file_stem(path);
     }
   }
+  file.material_names = listed_names(header.label_names);
   if (header.material_names) file.material_names = read_texts(*header.material_names);
   if (!header.nodes[0].empty()) {
     file.nodes = header.nodes;

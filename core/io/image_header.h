@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +58,7 @@ struct ImageHeader {
   /// The texts of GridFile::material_names, each with a zero byte behind it; their number of bytes is not
   /// set.
   std::optional<VolumeSource> material_names;
+  std::map<std::int64_t, std::string> label_names{};  ///< names of labels by their values; usually empty
 };
 
 /// Makes the header of a file of bare samples.

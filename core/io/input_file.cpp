@@ -28,7 +28,7 @@ std::size_t check_input_file(const std::filesystem::path& path) {
   if (code) fail("{}: expected a readable file: {}", path.string(), code.message());
   if (status.type() == std::filesystem::file_type::directory) {
     if (is_dicom_folder(path)) return static_cast<std::size_t>(size_of_folder(path));
-    fail("{}: expected a file, found a folder without any of DICOM", path.string());
+    fail("{}: expected a file, found a folder", path.string());
   }
   if (status.type() != std::filesystem::file_type::regular) {
     fail("{}: expected a file, found something else", path.string());

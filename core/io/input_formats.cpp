@@ -28,6 +28,7 @@
   FORMAT(vtk_picture_format)         \
   FORMAT(vtu_format)                 \
   FORMAT(cells_format)               \
+  FORMAT(vtkhdf_format)              \
   FORMAT(vtp_format)                 \
   FORMAT(network_format)             \
   FORMAT(surface_format)
@@ -106,7 +107,7 @@ const InputFormat* find_input_format(const std::filesystem::path& path) {
 
 InputKind kind_by_format(const std::filesystem::path& path) {
   const InputFormat* format = find_format_by_name(path);
-  if (format == nullptr) return InputKind::kGrid;
+  if (format == nullptr) return is_mesh_by_header(path) ? InputKind::kCells : InputKind::kGrid;
   if (is_network_ply(path)) return InputKind::kNetwork;
   return is_mesh_by_header(path) ? InputKind::kCells : format->kind;
 }
@@ -125,7 +126,7 @@ std::string list_grid_endings(std::string_view last) {
 std::string list_mesh_endings(std::string_view last) {
   return list(
       [](const InputFormat& format) {
-        return format.kind == InputKind::kCells || format.kind == InputKind::kMesh;
+        return format.kind == InputKind::kCells || format.kind == InputKind::kMesh || format.may_be_cells;
       },
       last);
 }

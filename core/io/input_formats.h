@@ -63,7 +63,8 @@ struct InputFormat {
   /// Whether a file may have several arrays, one of which is named for a volume.
   bool several_arrays = false;
   bool several_times = false;
-  bool of_folders = false;  ///< whether a folder of files may stand for one of the format
+  bool may_be_cells = false;  ///< whether a grid's ending may be that of cells too (is_mesh_by_header)
+  bool of_folders = false;    ///< whether a folder of files may stand for one of the format
 
   [[nodiscard]] bool gives_grids() const { return read_header != nullptr || read_grid != nullptr; }
   [[nodiscard]] bool gives_volumes() const { return read_header != nullptr || find_volume != nullptr; }

@@ -117,8 +117,27 @@ LabelledNetwork parse_labelled_network(std::string_view text, const std::string&
   return network;
 }
 
-std::map<std::int32_t, std::string> parse_region_names(std::string_view text, const std::string& name) {
-  std::map<std::int32_t, std::string> names;
+namespace {
+
+/// The name in a line of ITK-SNAP's table of labels, behind the label: three numbers of a colour, three that
+/// say how it is shown, and the name in quotes. Empty for other lines.
+std::string_view table_name(std::string_view rest) {
+  const std::size_t quote = rest.find('"');
+  if (quote == std::string_view::npos || rest.back() != '"' || rest.size() < quote + 2) return {};
+  std::string_view numbers = rest.substr(0, quote);
+  std::size_t count = 0;
+  for (numbers = trimmed(numbers, kSpaces); !numbers.empty(); ++count) {
+    const std::size_t end = std::min(numbers.find_first_of(kSpaces), numbers.size());
+    if (numbers.substr(0, end).find_first_not_of("0123456789.-+e") != std::string_view::npos) return {};
+    numbers = trimmed(numbers.substr(end), kSpaces);
+  }
+  return count == 6 ? trimmed(rest.substr(quote + 1, rest.size() - quote - 2), kSpaces) : std::string_view();
+}
+
+}  // namespace
+
+std::map<std::int64_t, std::string> parse_region_names(std::string_view text, const std::string& name) {
+  std::map<std::int64_t, std::string> names;
   std::size_t number = 0;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -127,11 +146,12 @@ std::map<std::int32_t, std::string> parse_region_names(std::string_view text, co
     ++number;
     line = trimmed(line, kSpaces);
     if (line.empty() || line[0] == '#' || line[0] == '(') continue;
-    std::int32_t label = 0;
+    std::int64_t label = 0;
     const auto [rest, code] = std::from_chars(line.data(), line.data() + line.size(), label);
     std::string_view label_name = line.substr(static_cast<std::size_t>(rest - line.data()));
     const bool separated = !label_name.empty() && is_space(label_name[0]);
     label_name = trimmed(label_name, kSpaces);
+    if (const std::string_view quoted = table_name(label_name); !quoted.empty()) label_name = quoted;
     if (code != std::errc() || !separated || label_name.empty()) {
       fail("{}: line {}: expected a label and its region's name, found '{}'", name, number,
            printable(line, 20));
@@ -218,7 +238,7 @@ bool first_label_is_front(const LabelledNetwork& network) {
 }
 
 InterfaceMesh to_interface_mesh(const LabelledNetwork& network,
-                                const std::map<std::int32_t, std::string>& names, const std::string& source) {
+                                const std::map<std::int64_t, std::string>& names, const std::string& source) {
   InterfaceMesh mesh;
   mesh.source = source;
   mesh.points = network.points;

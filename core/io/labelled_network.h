@@ -23,9 +23,9 @@ struct LabelledNetwork {
 /// points and indices in range.
 LabelledNetwork parse_labelled_network(std::string_view text, const std::string& name);
 
-/// Reads the names of regions from lines "LABEL NAME"; blank lines and those that begin with '#' or '(' are
-/// skipped.
-std::map<std::int32_t, std::string> parse_region_names(std::string_view text, const std::string& name);
+/// Reads the names of regions from lines "LABEL NAME", or from a table of labels of ITK-SNAP, whose names are
+/// in quotes behind six numbers; blank lines and those that begin with '#' or '(' are skipped.
+std::map<std::int64_t, std::string> parse_region_names(std::string_view text, const std::string& name);
 
 /// Whether the first label of a triangle is the region that its right-hand normal points to. Sources differ,
 /// so the data decide: the closed regions, or all if none is closed, have positive volumes except for the
@@ -35,6 +35,6 @@ bool first_label_is_front(const LabelledNetwork& network);
 /// Converts a network. Its materials are the labels in ascending order, named by `names` or else by number.
 /// Triangles with one label on both sides are no interfaces and are removed.
 InterfaceMesh to_interface_mesh(const LabelledNetwork& network,
-                                const std::map<std::int32_t, std::string>& names, const std::string& source);
+                                const std::map<std::int64_t, std::string>& names, const std::string& source);
 
 }  // namespace adamas::io

@@ -64,15 +64,25 @@ void make_integral(const std::string& source, GridArray& array,
   array.intercept = 0;
 }
 
-template <class Label>
-std::string label_name(Label label, const std::vector<std::string>& names) {
-  const bool named = std::in_range<std::size_t>(label) && static_cast<std::size_t>(label) < names.size();
-  return named ? names[static_cast<std::size_t>(label)] : std::to_string(label);
-}
+/// The names of labels: those that are given, or the entry of a list at a label's value, or else the number.
+struct LabelNames {
+  const std::vector<std::string>& listed;
+  const std::map<std::int64_t, std::string>& given;
+
+  template <class Label>
+  [[nodiscard]] std::string operator()(Label label) const {
+    if (std::in_range<std::int64_t>(label)) {
+      const auto found = given.find(static_cast<std::int64_t>(label));
+      if (found != given.end()) return found->second;
+    }
+    const bool named = std::in_range<std::size_t>(label) && static_cast<std::size_t>(label) < listed.size();
+    return named ? listed[static_cast<std::size_t>(label)] : std::to_string(label);
+  }
+};
 
 template <class Label>
 NamedLabels indexed(const std::string& source, const std::string& array, const std::vector<Label>& values,
-                    const std::vector<std::string>& names) {
+                    const LabelNames& names) {
   std::vector<Label> distinct = values;
   sort_unique(distinct);
   if (distinct.size() > kMostLabels) {
@@ -87,19 +97,18 @@ NamedLabels indexed(const std::string& source, const std::string& array, const s
     index.push_back(static_cast<std::uint16_t>(at - distinct.begin()));
   }
   result.index = std::move(index);
-  for (const Label v : distinct) result.names.push_back(label_name(v, names));
+  for (const Label v : distinct) result.names.push_back(names(v));
   return result;
 }
 
-/// Makes labels of whole numbers. The name of a label is the entry of `names` at its value, else the value
-/// itself. A scale that does not lead to whole numbers is ignored, and a remark on it is appended to `note`
-/// if it is given. Throws Error, with `source`, at numbers that are not whole.
-NamedLabels name_labels(const std::string& source, GridArray array, const std::vector<std::string>& names,
+/// Makes labels of whole numbers. A scale that does not lead to whole numbers is ignored, and a remark on it
+/// is appended to `note` if it is given. Throws Error, with `source`, at numbers that are not whole.
+NamedLabels name_labels(const std::string& source, GridArray array, const LabelNames& names,
                         const std::function<void(const std::string&)>& note) {
   NamedLabels result;
   if (array.runs) {
     result.index = std::move(array.runs->index);
-    for (const std::int64_t v : array.runs->numbers) result.names.push_back(label_name(v, names));
+    for (const std::int64_t v : array.runs->numbers) result.names.push_back(names(v));
     return result;
   }
   if (!array.integral()) make_integral(source, array, note);
@@ -126,6 +135,18 @@ std::string as_argument(const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<std::string> listed_names(const std::map<std::int64_t, std::string>& names) {
+  constexpr std::int64_t kMost = 65535;
+  std::vector<std::string> listed;
+  for (const auto& [label, name] : names) {
+    if (label < 0 || label > kMost) continue;
+    while (std::cmp_less(listed.size(), label))
+      listed.push_back(listed.empty() ? "background" : std::to_string(listed.size()));
+    listed.push_back(name);
+  }
+  return listed;
+}
 
 MaterialArrays::MaterialArrays(const std::filesystem::path& path, const MaterialDataOptions& options,
                                std::vector<GridArray> arrays, std::vector<std::string> material_names,
@@ -315,7 +336,8 @@ void MaterialArrays::set_labels(GridArray array) {
     fail("{}: expected labels or volume fractions, found both", source_);
   require_scalar(array);
   chosen_.centering = array.centering;
-  chosen_.labels = name_labels(source_, std::move(array), material_names_, options_.note);
+  chosen_.labels =
+      name_labels(source_, std::move(array), {material_names_, options_.label_names}, options_.note);
   for (const std::string& name : chosen_.labels->names) add_material(name);
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,10 @@ struct NamedLabels {
   LabelArray index;
   std::vector<std::string> names;
 };
+
+/// Lists names of labels by their values; a label without a name is called by its number, or "background" if
+/// it is 0. Labels below 0 and above 65535 are left out.
+std::vector<std::string> listed_names(const std::map<std::int64_t, std::string>& names);
 
 /// The arrays of a file that are materials.
 struct ChosenMaterials {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "adamas/series.h"
 #include "core/base/error.h"
 #include "core/io/field_assembly.h"
 #include "core/io/material_arrays.h"
@@ -71,7 +72,7 @@ class Reader {
           "this "
           "height, or --axisymmetric for rings round the axis of y",
           name);
-    options_.axisymmetric ? revolve(name, file) : extrude(file, *options_.extrude);
+    options_.axisymmetric ? revolve(name, file) : extrude(name, file, *options_.extrude);
   }
 
   /// Takes the blocks for materials if nothing else says what these are.
@@ -95,7 +96,8 @@ class Reader {
   /// Reads the one array of another file, which has to be on the same mesh.
   GridArray read_other(const std::string& option, const std::filesystem::path& file) {
     progress_.step("read " + file.filename().string(), 0.5);
-    MeshFile other = read_mesh_file(file, options_.time);
+    // A file of one time goes with all of them.
+    MeshFile other = read_mesh_file(file, mesh_times(file).size() > 1 ? options_.time : std::nullopt);
     extrude_if_flat(file.string(), other);
     const std::vector<Vec3>& points = data_.mesh.points();
     if (other.cell_ends.size() != data_.mesh.cell_count() || other.points.size() != points.size())

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "adamas/series.h"
 #include "adamas/text.h"
@@ -58,27 +60,47 @@ void check_sent(const std::string& name, const MeshFile& file) {
 InputFormat cells_format() {
   return {.name = "cells of a mesh",
           .kind = InputKind::kCells,
-          .endings = ".vts .pvtu .pvts .vtm .vth .vtkhdf .foam .exo .cgns .silo .pdb",
+          .endings = ".vts .pvtu .pvts .vtm .vth .foam .exo .cgns .silo .pdb",
           .more_endings = ".vthb .e .ex2 .exii .g .gen"};
 }
 
 namespace {
 
-/// Returns whether a file is one of Silo, by its ending or, for that of HDF5, by a name that Silo writes,
-/// which stands near the beginning or the end of a file.
-bool is_silo(const std::filesystem::path& path) {
+/// The programs whose meshes are read of HDF5.
+enum class Hdf5Origin : std::uint8_t {
+  kNone,
+  kSilo,
+  kMesh,  ///< Truchas, FLASH, or AMR of VTKHDF
+  kVtk,   ///< an unstructured grid of VTKHDF
+};
+
+/// Finds which program wrote a file of HDF5, by names that stand near its beginning or its end.
+Hdf5Origin hdf5_origin(const std::filesystem::path& path) {
   const std::string extension = file_extension(path);
-  if (extension == ".silo" || extension == ".pdb") return true;
-  if (extension != ".h5" && extension != ".hdf5") return false;
+  if (extension == ".silo" || extension == ".pdb") return Hdf5Origin::kSilo;
+  const bool by_name = extension == ".h5" || extension == ".hdf5" || extension == ".vtkhdf";
+  // The files of FLASH have no endings.
+  if (!by_name && find_format_by_name(path) != nullptr) return Hdf5Origin::kNone;
+  const auto file = FileHandle::open(path);
+  std::array<char, 8> magic{};
+  if (file->read_some(0, std::as_writable_bytes(std::span(magic))) != magic.size() ||
+      std::string_view(magic.data(), magic.size()) != "\x89HDF\r\n\x1a\n")
+    return Hdf5Origin::kNone;
   constexpr std::size_t kSearched = 4 << 20;
   std::string bytes(kSearched, '\0');
-  const auto file = FileHandle::open(path);
-  const auto found_at = [&](std::uint64_t offset) {
-    const std::size_t size = file->read_some(offset, std::as_writable_bytes(std::span(bytes)));
-    return std::string_view(bytes).substr(0, size).find("_silolibinfo") != std::string_view::npos;
-  };
   const std::uint64_t size = std::filesystem::file_size(path);
-  return found_at(0) || (size > kSearched && found_at(size - kSearched));
+  for (const std::uint64_t offset : {std::uint64_t{0}, size - std::min<std::uint64_t>(size, kSearched)}) {
+    const std::size_t found = file->read_some(offset, std::as_writable_bytes(std::span(bytes)));
+    const std::string_view text = std::string_view(bytes).substr(0, found);
+    const auto has = [text](std::string_view name) { return text.find(name) != std::string_view::npos; };
+    if (has("_silolibinfo")) return Hdf5Origin::kSilo;
+    if (has("Nodal Coordinates") && has("Element Connectivity")) return Hdf5Origin::kMesh;
+    if (has("refine level") && has("bounding box") && has("node type")) return Hdf5Origin::kMesh;
+    if (extension != ".vtkhdf") continue;
+    if (has("OverlappingAMR")) return Hdf5Origin::kMesh;
+    if (has("UnstructuredGrid")) return Hdf5Origin::kVtk;
+  }
+  return Hdf5Origin::kNone;
 }
 
 bool is_legacy_mesh(const std::filesystem::path& path) {
@@ -105,16 +127,31 @@ bool is_mesh_by_header(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, code)) return false;
   const std::string extension = file_extension(path);
   if (extension == ".vtk") return is_legacy_mesh(path);
-  return extension == ".vtu" ? is_foreign_vtu(path) : is_silo(path);
+  return extension == ".vtu" ? is_foreign_vtu(path) : hdf5_origin(path) != Hdf5Origin::kNone;
 }
 
 void send_cells(const ReaderRequest& request, ByteSink& sink) {
   const std::filesystem::path path = request.paths.front();
-  if (request.reader == LibraryReader::kCellTimes) {
-    sink.put(mesh_times_with_vtk(path));
-  } else {
-    sink.put(is_silo(path) ? read_silo_mesh(path) : read_mesh_with_vtk(path, request.time));
+  const Hdf5Origin origin = hdf5_origin(path);
+  if (request.reader == LibraryReader::kCellTimes)
+    return sink.put(origin == Hdf5Origin::kMesh ? hdf5_mesh_times(path) : mesh_times_with_vtk(path));
+  switch (origin) {
+    case Hdf5Origin::kSilo:
+      return sink.put(read_silo_mesh(path));
+    case Hdf5Origin::kMesh:
+      return sink.put(read_hdf5_mesh(path, request.time));
+    case Hdf5Origin::kVtk:
+    case Hdf5Origin::kNone:
+      return sink.put(read_mesh_with_vtk(path, request.time));
   }
+}
+
+void fail_for_time(const std::string& name, std::size_t count, std::uint64_t time) {
+  fail("{}: --time: expected a time from 0 to {}, found {}", name, std::max<std::size_t>(count, 1) - 1, time);
+}
+
+std::string last_time_remark(std::size_t count, double time) {
+  return fmt::format("of {} times the last one is read, {:g} (others by --time N, from 0 on)", count, time);
 }
 
 }  // namespace adamas::io
@@ -142,75 +179,104 @@ MeshFile read_mesh_file(const std::filesystem::path& path, std::optional<std::ui
 
 namespace {
 
-/// Moves a flat mesh through `layers` places, each given by `move`; the last one is the first again if the
-/// way is closed. Each cell becomes one between each two places.
-template <class Move>
-void sweep(MeshFile& file, std::uint32_t layers, bool closed, const Move& move) {
-  const std::vector<Vec3> flat = std::exchange(file.points, {});
-  const std::vector<std::uint32_t> points = std::exchange(file.face_points, {}),
-                                   ends = std::exchange(file.face_ends, {});
-  file.cell_ends.clear();
-  // Points that stay at their places stay one.
-  std::vector<std::vector<std::uint32_t>> numbers(layers);
-  for (std::uint32_t layer = 0; layer < layers; ++layer) {
-    for (std::uint32_t p = 0; p < flat.size(); ++p) {
-      const Vec3 at = move(flat[p], layer);
-      const bool stays = layer > 0 && at == file.points[numbers[0][p]];
-      numbers[layer].push_back(stays ? numbers[0][p] : static_cast<std::uint32_t>(file.points.size()));
-      if (!stays) file.points.push_back(at);
+/// Moves a flat mesh through places: each of its cells becomes one between each two of them.
+class Sweep {
+ public:
+  /// `layers`: the number of places; `closed`: whether the first one follows the last.
+  Sweep(const std::string& name, MeshFile& file, std::uint32_t layers, bool closed)
+      : name_(name),
+        file_(file),
+        numbers_(layers),
+        between_(closed ? layers : layers - 1),
+        points_(std::exchange(file.face_points, {})),
+        ends_(std::exchange(file.face_ends, {})) {
+    file_.flat = false;
+    file_.cell_ends.clear();
+  }
+
+  /// `move(p, layer)`: where a point is at a place.
+  template <class Move>
+  void run(const Move& move) {
+    add_points(move);
+    for (std::uint32_t layer = 0; layer < between_; ++layer) add_cells(layer);
+    for (GridArray& array : file_.arrays) {
+      array.centering == Centering::kCells
+          ? std::visit([this](auto& values) { repeat(values); }, array.values)
+          : std::visit([&](auto& values) { move_values(array.components, values); }, array.values);
+    }
+    repeat(file_.block_of_cell);
+  }
+
+ private:
+  /// Adds the points of all places; those that stay where they are stay one.
+  template <class Move>
+  void add_points(const Move& move) {
+    const std::vector<Vec3> flat = std::exchange(file_.points, {});
+    if (flat.size() * numbers_.size() >= std::numeric_limits<std::uint32_t>::max())
+      fail("{}: expected fewer than {} points of a flat mesh, found {}", name_,
+           std::numeric_limits<std::uint32_t>::max() / numbers_.size(), flat.size());
+    for (std::uint32_t layer = 0; layer < numbers_.size(); ++layer) {
+      for (std::size_t p = 0; p < flat.size(); ++p) {
+        const Vec3 at = move(flat[p], layer);
+        const bool stays = layer > 0 && at == file_.points[numbers_[0][p]];
+        numbers_[layer].push_back(stays ? numbers_[0][p] : static_cast<std::uint32_t>(file_.points.size()));
+        if (!stays) file_.points.push_back(at);
+      }
     }
   }
-  std::vector<std::uint32_t> face;
-  for (std::uint32_t layer = 0; layer + (closed ? 0 : 1) < layers; ++layer) {
-    const auto &below = numbers[layer], &above = numbers[(layer + 1) % layers];
+
+  void add_cells(std::uint32_t layer) {
+    const auto &below = numbers_[layer], &above = numbers_[(layer + 1) % numbers_.size()];
+    std::vector<std::uint32_t> face;
     std::size_t begin = 0;
-    for (const std::uint32_t end : ends) {
-      const std::span<const std::uint32_t> own = std::span(points).subspan(begin, end - begin);
+    for (const std::uint32_t end : ends_) {
+      const std::span<const std::uint32_t> own = std::span(points_).subspan(begin, end - begin);
       for (const auto* side : {&below, &above}) {
         face.clear();
         for (const std::uint32_t p : own) face.push_back((*side)[p]);
-        append_face(face, file);
+        append_face(face, file_);
       }
       for (std::size_t i = 0; i < own.size(); ++i) {
         const std::uint32_t a = own[i], b = own[(i + 1) % own.size()];
-        append_face(std::array{below[a], below[b], above[b], above[a]}, file);
+        append_face(std::array{below[a], below[b], above[b], above[a]}, file_);
       }
-      end_cell(file);
+      if (!end_cell(file_)) fail("{}: expected cells that enclose a volume, found others", name_);
       begin = end;
     }
   }
-  const std::uint32_t copies = closed ? layers : layers - 1;
-  const auto repeat = [](auto& values, std::uint32_t times) {
-    const std::size_t count = values.size();
-    values.reserve(count * times);
-    for (std::uint32_t t = 1; t < times; ++t)
-      values.insert(values.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-  };
-  for (GridArray& array : file.arrays) {
-    if (array.centering == Centering::kCells) {
-      std::visit([&](auto& values) { repeat(values, copies); }, array.values);
-      continue;
-    }
-    const auto components = static_cast<std::size_t>(array.components);
-    const auto move_values = [&](auto& values) {
-      const auto of_flat = std::exchange(values, {});
-      values.resize(file.points.size() * components);
-      for (const auto& own : numbers) {
-        for (std::size_t p = 0; p < own.size(); ++p)
-          std::copy_n(of_flat.begin() + static_cast<std::ptrdiff_t>(p * components), components,
-                      values.begin() + static_cast<std::ptrdiff_t>(own[p] * components));
-      }
-    };
-    std::visit(move_values, array.values);
+
+  /// Repeats the values of cells for each layer of them.
+  template <class Values>
+  void repeat(Values& values) const {
+    const Values once = values;
+    for (std::uint32_t layer = 1; layer < between_; ++layer)
+      values.insert(values.end(), once.begin(), once.end());
   }
-  repeat(file.block_of_cell, copies);
-  file.flat = false;
-}
+
+  /// Gives the points of all places the values of those that they come from.
+  template <class Values>
+  void move_values(int per_point, Values& values) const {
+    const auto components = static_cast<std::size_t>(per_point);
+    const Values flat = std::exchange(values, {});
+    values.resize(file_.points.size() * components);
+    for (const auto& own : numbers_) {
+      for (std::size_t p = 0; p < own.size(); ++p)
+        std::copy_n(flat.begin() + static_cast<std::ptrdiff_t>(p * components), components,
+                    values.begin() + static_cast<std::ptrdiff_t>(own[p] * components));
+    }
+  }
+
+  const std::string& name_;
+  MeshFile& file_;
+  std::vector<std::vector<std::uint32_t>> numbers_;  // of the points at each place
+  std::uint32_t between_;                            // the number of layers of cells
+  std::vector<std::uint32_t> points_, ends_;         // of the flat cells
+};
 
 }  // namespace
 
-void extrude(MeshFile& file, double height) {
-  sweep(file, 2, false, [height](const Vec3& p, std::uint32_t layer) {
+void extrude(const std::string& name, MeshFile& file, double height) {
+  Sweep(name, file, 2, false).run([height](const Vec3& p, std::uint32_t layer) {
     return p + Vec3{0, 0, layer * height};
   });
 }
@@ -227,7 +293,7 @@ void revolve(const std::string& name, MeshFile& file) {
   }
   // A polygon of this radius has the area of the circle.
   const double radius = std::sqrt(kAngle / std::sin(kAngle));
-  sweep(file, kSectors, true, [radius](const Vec3& p, std::uint32_t layer) {
+  Sweep(name, file, kSectors, true).run([radius](const Vec3& p, std::uint32_t layer) {
     if (p.x == 0) return p;
     return Vec3{radius * p.x * std::cos(layer * kAngle), p.y, p.z + radius * p.x * std::sin(layer * kAngle)};
   });

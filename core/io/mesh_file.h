@@ -47,8 +47,19 @@ std::vector<double> mesh_times_with_vtk(const std::filesystem::path& path);
 /// material.
 MeshFile read_silo_mesh(const std::filesystem::path& path);
 
-/// Makes prisms of this height of the cells of a flat mesh.
-void extrude(MeshFile& file, double height);
+/// Reads, in this process, a mesh of Truchas, at a time as read_mesh_file does, blocks of FLASH, or
+/// overlapping AMR of VTKHDF.
+MeshFile read_hdf5_mesh(const std::filesystem::path& path, std::optional<std::uint64_t> time = {});
+std::vector<double> hdf5_mesh_times(const std::filesystem::path& path);
+
+/// Throws the Error that a file of `count` times, or of none, has no number `time`.
+[[noreturn]] void fail_for_time(const std::string& name, std::size_t count, std::uint64_t time);
+/// What is said where the last time is read since none was chosen.
+std::string last_time_remark(std::size_t count, double time);
+
+/// Makes prisms of this height of the cells of a flat mesh. Throws Error, which begins with `name`, if they
+/// enclose no volume.
+void extrude(const std::string& name, MeshFile& file, double height);
 /// Turns the cells of a flat mesh round the axis of y into sectors of rings. Rings are polygons whose areas
 /// are those of circles, so that volumes are exact. Throws Error, which begins with `name`, if a point lies
 /// at x < 0.

@@ -18,6 +18,7 @@
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
+#include "core/io/material_arrays.h"
 #include "core/io/referred_files.h"
 
 namespace adamas::io {
@@ -213,6 +214,9 @@ class Parser {
     if (places_.sizes.empty()) fail("{}: expected a header with sizes, found none", name_);
     if (!has_encoding_) fail("{}: expected a header with encoding, found none", name_);
     places_.apply(name_, header_);
+    for (const auto& [number, segment] : segments_) {
+      if (!segment.name.empty()) header_.segments.emplace(segment.label.value_or(number + 1), segment.name);
+    }
     return header_;
   }
 
@@ -231,8 +235,22 @@ class Parser {
     fail("{}: line {}: expected {}, found '{}'", name_, line_, expected, printable(found, 40));
   }
 
+  /// Takes the names and the labels of segments, "Segment2_Name" and "Segment2_LabelValue", of other keys.
+  void read_key(std::string_view key, std::string_view value) {
+    constexpr std::string_view kSegment = "Segment";
+    const std::size_t end = key.find('_');
+    if (!key.starts_with(kSegment) || end == std::string_view::npos) return;
+    const auto number = nrrd_number<std::uint16_t>(key.substr(kSegment.size(), end - kSegment.size()));
+    if (!number) return;
+    const std::string_view what = key.substr(end + 1);
+    if (what == "Name") segments_[*number].name = value;
+    if (what == "LabelValue") segments_[*number].label = nrrd_number<std::int64_t>(value);
+  }
+
   void read_line(std::string_view line) {
-    if (line[0] == '#' || line.find(":=") != std::string_view::npos) return;
+    if (line[0] == '#') return;
+    if (const std::size_t sign = line.find(":="); sign != std::string_view::npos)
+      return read_key(line.substr(0, sign), line.substr(sign + 2));
     const std::size_t colon = line.find(": ");
     if (colon == std::string_view::npos) {
       if (line.back() == ':') return;
@@ -344,6 +362,11 @@ class Parser {
   std::size_t at_ = 0, line_ = 0;
   NrrdHeader header_;
   bool has_encoding_ = false;
+  struct Segment {
+    std::string name;
+    std::optional<std::int64_t> label;
+  };
+  std::map<std::uint16_t, Segment> segments_;
   NrrdAxisFields places_;
 };
 
@@ -392,8 +415,15 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   source.components = header.components;
   source.big_endian = header.big_endian;
   source.grid.dimensions = image.dimensions;
-  image.arrays.push_back(
-      {.name = {}, .centering = Centering::kPoints, .source = std::move(source), .planar = header.planar});
+  if (source.components == 1) image.label_names = header.segments;
+  if (source.components > 1 && !header.segments.empty())
+    source.remark = "segments lie in several layers, which are components and no labels";
+  // Segmentations are taken for labels without being named, as those that adamas writes.
+  const bool labelled = !header.segments.empty() && source.components == 1;
+  image.arrays.push_back({.name = labelled ? kWrittenLabels : "",
+                          .centering = Centering::kPoints,
+                          .source = std::move(source),
+                          .planar = header.planar});
   return image;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,8 @@ struct NrrdHeader {
   std::size_t line_skip = 0;
   std::int64_t byte_skip = 0;    ///< -1: the data are the file's last bytes
   std::size_t header_bytes = 0;  ///< size of the header with its empty line
+  /// The names of the segments of a segmentation of 3D Slicer (.seg.nrrd), by the values of their labels.
+  std::map<std::int64_t, std::string> segments{};
 };
 
 /// Reads a header. Throws Error with `name` and the line unless the text begins with a complete header of

@@ -19,8 +19,8 @@ enum class LibraryReader : std::uint8_t {
   kGrid,         ///< a grid file by VTK or libtiff
   kHdf5Grid,     ///< all numeric data sets of a file by HDF5
   kMesh,         ///< .vtu or .vtp by VTK
-  kCells,        ///< the cells of a mesh by VTK or Silo
-  kCellTimes,    ///< the times of a file of cells by VTK
+  kCells,        ///< the cells of a mesh by VTK, Silo or HDF5
+  kCellTimes,    ///< the times of a file of cells
   kPolygons,     ///< a surface by CGAL
   kGridVolume,   ///< a volume on a grid by VTK
   kHdf5Volume,   ///< a volume by HDF5

@@ -27,7 +27,7 @@ std::vector<NamedArray> cell_fields(const SolverMesh& mesh) {
   return fields;
 }
 
-void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh) {
+void write_vtk_mesh(const std::filesystem::path& path, const SolverMesh& mesh) {
   UnstructuredMesh file;
   file.points = mesh.points;
   for (const auto& v : mesh.tetrahedra) {
@@ -347,10 +347,10 @@ SolverMesh read_solver_mesh(const std::filesystem::path& path) {
 
 void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh) {
   const std::string extension = file_extension(path);
-  if (extension == ".vtu") return write_vtu(path, mesh);
+  if (extension == ".vtu" || extension == ".vtkhdf") return write_vtk_mesh(path, mesh);
   if (extension == ".msh") return write_gmsh(path, mesh);
   if (extension == ".exo") return write_exodus(path, mesh);
-  fail("{}: expected .vtu, .msh or .exo, found '{}'", path.string(), extension);
+  fail("{}: expected .vtu, .vtkhdf, .msh or .exo, found '{}'", path.string(), extension);
 }
 
 }  // namespace adamas::io

@@ -25,6 +25,7 @@
 #include "core/io/reader_program.h"
 #include "core/io/vtk_checks.h"
 #include "core/io/vtk_support.h"
+#include "core/io/vtkhdf_writer.h"
 
 namespace adamas::io {
 
@@ -287,8 +288,10 @@ void write_unstructured_mesh(const std::filesystem::path& path, UnstructuredMesh
     write_vtu(path, mesh);
   } else if (extension == ".vtp") {
     write_vtp(path, mesh);
+  } else if (extension == ".vtkhdf") {
+    write_vtkhdf(path, mesh);
   } else {
-    fail("{}: expected .vtu or .vtp for a mesh, found '{}'", path.string(), extension);
+    fail("{}: expected .vtu, .vtkhdf or .vtp for a mesh, found '{}'", path.string(), extension);
   }
 }
 

@@ -184,7 +184,17 @@ InputFormat legacy_vtk_format() {
           .shown_by = [](std::string_view bytes) { return bytes.starts_with("# vtk DataFile"); },
           .read_grid = read_checked_legacy,
           .find_volume = import_grid,
-          .several_arrays = true};
+          .several_arrays = true,
+          .may_be_cells = true};
+}
+
+InputFormat vtkhdf_format() {
+  return {.name = "VTKHDF",
+          .endings = ".vtkhdf",
+          .read_grid = read_grid_by_library,
+          .find_volume = import_grid,
+          .several_arrays = true,
+          .may_be_cells = true};
 }
 
 InputFormat vtk_pieces_format() {

@@ -51,6 +51,7 @@ class AmrCollector {
                         {sources.cells[n].begin(), sources.cells[n].end()},
                         {sources.points[n].begin(), sources.points[n].end()}});
     }
+    if (pieces.empty()) fail("{}: expected cells that are no copies and not hidden, found none", name_);
     if (hidden_ > 0) file.add_remark(fmt::format("{} cells that are hidden are left out", hidden_));
     add_arrays_of(name_, pieces, file);
     return file;
@@ -104,7 +105,9 @@ class AmrCollector {
   /// Leaves out copies of cells of other blocks, and hidden cells.
   void leave_out(vtkUniformGrid& grid, AmrBlock& block) {
     vtkUnsignedCharArray* ghosts = grid.GetCellGhostArray();
-    for (vtkIdType c = 0; ghosts != nullptr && c < ghosts->GetNumberOfTuples(); ++c) {
+    const vtkIdType cells =
+        ghosts != nullptr ? std::min(ghosts->GetNumberOfTuples(), grid.GetNumberOfCells()) : 0;
+    for (vtkIdType c = 0; c < cells; ++c) {
       const bool copy = (ghosts->GetValue(c) & vtkDataSetAttributes::DUPLICATECELL) != 0,
                  hidden = (ghosts->GetValue(c) & vtkDataSetAttributes::HIDDENCELL) != 0;
       if (!copy && !hidden) continue;

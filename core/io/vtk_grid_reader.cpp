@@ -2,6 +2,7 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
+#include <vtkHDFReader.h>
 #include <vtkImageData.h>
 #include <vtkImageReader2.h>
 #include <vtkImageReader2Factory.h>
@@ -96,8 +97,9 @@ void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, 
   if (image != nullptr) lay_out(axes_of(*image), file);
 }
 
+/// Reads a format that states where its arrays are.
 template <class Reader>
-GridFile read_xml(const std::string& name, const char* kind, const VtkMessages& messages) {
+GridFile read_stated(const std::string& name, const char* kind, const VtkMessages& messages) {
   GridFile file;
   file.kind = kind;
   add_data(name, read_if_readable<Reader>(name, fmt::format("a {}", kind), messages), ArrayPlaces::kStated,
@@ -141,13 +143,15 @@ GridFile read_grid_with_vtk(const std::filesystem::path& path) {
   const std::string name = path.string(), extension = file_extension(path);
   GridFile file;
   if (extension == ".vti") {
-    file = read_xml<vtkXMLImageDataReader>(name, "VTK XML image", messages);
+    file = read_stated<vtkXMLImageDataReader>(name, "VTK XML image", messages);
   } else if (extension == ".pvti") {
-    file = read_xml<vtkXMLPImageDataReader>(name, "VTK XML image in pieces", messages);
+    file = read_stated<vtkXMLPImageDataReader>(name, "VTK XML image in pieces", messages);
   } else if (extension == ".vtr") {
-    file = read_xml<vtkXMLRectilinearGridReader>(name, "VTK XML rectilinear grid", messages);
+    file = read_stated<vtkXMLRectilinearGridReader>(name, "VTK XML rectilinear grid", messages);
   } else if (extension == ".pvtr") {
-    file = read_xml<vtkXMLPRectilinearGridReader>(name, "VTK XML rectilinear grid in pieces", messages);
+    file = read_stated<vtkXMLPRectilinearGridReader>(name, "VTK XML rectilinear grid in pieces", messages);
+  } else if (extension == ".vtkhdf") {
+    file = read_stated<vtkHDFReader>(name, "VTKHDF image", messages);
   } else if (extension == ".vtk") {
     file = read_legacy(name, messages);
   } else if (extension == ".tif" || extension == ".tiff") {

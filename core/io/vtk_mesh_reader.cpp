@@ -485,18 +485,14 @@ MeshFile read_timed(const std::string& name, const TimedFormat& format, std::opt
                     const VtkMessages& messages) {
   const auto reader = format.open(name);
   const std::vector<double> times = times_of(*reader);
-  if (time && *time >= std::max<std::size_t>(times.size(), 1))
-    fail("{}: --time: expected a time from 0 to {}, found {}", name,
-         std::max<std::size_t>(times.size(), 1) - 1, *time);
+  if (time.value_or(0) >= std::max<std::size_t>(times.size(), 1)) fail_for_time(name, times.size(), *time);
   std::string remark;
   if (times.empty()) {
     reader->Update();
   } else {
     const double chosen = times[time.value_or(times.size() - 1)];
     reader->UpdateTimeStep(chosen);
-    if (!time && times.size() > 1)
-      remark = fmt::format("of {} times the last one is read, {:g} (others by --time N, from 0 on)",
-                           times.size(), chosen);
+    if (!time && times.size() > 1) remark = last_time_remark(times.size(), chosen);
   }
   messages.check(name);
   return collected(name, format.kind, reader->GetOutputDataObject(0), remark);
@@ -508,7 +504,7 @@ MeshFile read_mesh_with_vtk(const std::filesystem::path& path, std::optional<std
   const VtkMessages messages;
   const std::string name = path.string(), extension = file_extension(path);
   if (const auto format = timed_format(extension)) return read_timed(name, *format, time, messages);
-  if (time.value_or(0) != 0) fail("{}: --time: expected a time from 0 to 0, found {}", name, *time);
+  if (time.value_or(0) != 0) fail_for_time(name, 1, *time);
   MeshFile file;
   if (extension == ".vth" || extension == ".vthb") {
     file = read_amr(name, messages);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,6 +54,8 @@ struct MaterialDataOptions {
   /// FILE-or-ARRAY of whole numbers that name the material of a site. Where neither it nor `fractions` is
   /// given and no array is a volume fraction, an array "labels" of a file with material names is taken.
   std::string labels;
+  /// Names of labels by their numbers, before those that a file has.
+  std::map<std::int64_t, std::string> label_names;
   /// Further fields: NAME, FILE-or-ARRAY.
   std::vector<std::pair<std::string, std::string>> fields;
   /// Fields, by name, whose values are amounts per cell: they are divided by their material's volume there,
@@ -123,10 +126,10 @@ void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mes
 /// Writes a surface: `.ply`, `.stl`, `.obj`, `.vtp`, `.glb` or `.gltf`.
 void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh,
                 Progress& progress = SilentProgress::instance());
-/// Writes tetrahedra and their materials: `.vtu`, `.msh` or `.exo`.
+/// Writes tetrahedra and their materials: `.vtu`, `.vtkhdf`, `.msh` or `.exo`.
 void write_mesh(const std::filesystem::path& path, const MaterialTetrahedra& mesh);
-/// Writes tetrahedra and all their arrays: `.vtu`. AdaptiveMesh::view() becomes the file of `adamas
-/// resample`.
+/// Writes tetrahedra and all their arrays: `.vtu` or `.vtkhdf`. AdaptiveMesh::view() becomes the file of
+/// `adamas resample`.
 void write_mesh(const std::filesystem::path& path, const TetrahedraView& mesh);
 
 }  // namespace adamas

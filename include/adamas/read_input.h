@@ -31,7 +31,8 @@ struct InputOptions {
   bool stack = false;                    ///< `path` is a pattern of pictures, and no series of files
   RawOptions raw{};                      ///< what files without a header hold, and the places of a stack
   std::vector<GivenSurface> surfaces{};  ///< interfaces, instead of a network or beside a grid
-  /// A file with names of the labels of a network, a line "LABEL NAME" for each.
+  /// A file with names of the labels of a network or of `data`, a line "LABEL NAME" for each, or a table of
+  /// ITK-SNAP.
   std::filesystem::path region_names{};
   /// The domain of given interfaces; none: that of the grid, else the box of the interfaces enlarged by 5%.
   std::optional<Box3> box{};
@@ -70,8 +71,8 @@ bool has_given_interfaces(const InputOptions& options);
 /// read for it; whether the options suit the data is checked when interfaces are reconstructed.
 void check(const ReconstructOptions& options, const InputOptions& input);
 
-/// Throws Error (kUsage) where the options name the labels of a network, but the main file is no network with
-/// labels (.arec, .txt).
+/// Throws Error (kUsage) where the options name labels, but there are none: the main file is no network with
+/// labels (.arec, .txt), and `data` names no labels.
 void check_region_names(const InputOptions& options);
 
 /// Reads an input from files. Notes what was assumed, and what was mended in volume fractions beyond

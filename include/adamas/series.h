@@ -43,8 +43,8 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
 /// for a single file other than a .pvd. Throws Error as read_series() and match_stack() do.
 std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
 
-/// Returns the times that a file of cells has, in ascending order: those of ExodusII, CGNS and OpenFOAM; none
-/// for other files. Throws Error, with the file's name, where it cannot be read.
+/// Returns the times that a file of cells has, in ascending order: those of ExodusII, CGNS, OpenFOAM and
+/// Truchas; none for other files. Throws Error, with the file's name, where it cannot be read.
 std::vector<double> mesh_times(const std::filesystem::path& path);
 
 /// Returns a step for each time of a file of cells; none where it has fewer than two.

@@ -142,12 +142,8 @@ Input::Contents::Contents(std::unique_ptr<MultiMaterialData> taken)
       fields(describe(facts.fields)) {}
 
 Input::Contents::Contents(std::unique_ptr<MeshData> taken)
-    : cells(std::move(taken)), facts{cells->source, cells->mesh.box(), {}, 0, !cells->labels.empty()} {
-  std::size_t offset = 0;
-  for (const MeshField& field : cells->fields) {
-    facts.fields.push_back({field.name, field.unit, field.components, offset, 0, 0});
-    offset += static_cast<std::size_t>(field.components);
-  }
+    : cells(std::move(taken)),
+      facts{cells->source, cells->mesh.box(), field_infos(*cells), 0, !cells->labels.empty()} {
   fields = describe(facts.fields);
   const IdVector<MaterialId, std::string> names = materials_with_outside(*cells);
   materials.assign(names.begin(), names.end());

@@ -70,7 +70,13 @@ Slice slice(const Input& input, const Plane& plane, const SliceFieldOptions& opt
   const Input::Contents& contents = input.contents();
   if (contents.data && (!contents.mesh || !options.field.empty()))
     return slice_data(*contents.data, plane, options);
-  if (contents.cells && !options.field.empty()) return slice_data(*contents.cells, plane, options);
+  if (contents.cells && !options.field.empty()) {
+    Slice result = slice_data(*contents.cells, plane, options);
+    // The outside, which the section leaves empty, is a material too.
+    result.materials = contents.materials;
+    result.material_areas.resize(contents.materials.size(), 0);
+    return result;
+  }
   static_cast<void>(chosen({}, options, input.name()));
   const ResamplingSource source = contents.source({}, progress);
   return to_slice(cross_section(*source.network, source.box, source.materials.size(), plane, source.name),

@@ -70,12 +70,36 @@ TEST_F(CellSeries, OneTimeIsChosenByItsNumber) {
 }
 
 TEST_F(CellSeries, FieldsAreCutAndIntegrated) {
-  const auto cut = run(command("slice", {"--plane", "x=0.5", "--field", "p", "-o", "cut.png"}));
+  const auto cut =
+      run(command("slice", {"--plane", "x=0.5", "--field", "p", "--time", "1", "-o", "cut.png"}));
   EXPECT_EQ(cut.status, 0) << cut.err;
   const auto told = run(command("probe", {"--json", "probe.json", "--time", "2"}));
   EXPECT_EQ(told.status, 0) << told.err;
   const auto& water = read_json("probe.json")["materials"][0];
   EXPECT_NEAR(water["volume"].get<double>(), volumes_[2], 1e-5);
+}
+
+TEST_F(CellSeries, ASeriesIsNotOneTime) {
+  expect_failure({"resample", "case.foam", "--fraction", "water=alpha.water", "--rest", "air",
+                  "--interface-error", "5%", "-o", "one.pvd", "--time", "1"},
+                 {"case.foam", "expected several times for a series"});
+  expect_wrong_usage(
+      {"resample", "case.foam", "case.foam", "--time", "1", "--interface-error", "5%", "-o", "two.pvd"},
+      {"--time: expected one data set, found a series of 2"});
+}
+
+TEST_F(CellSeries, PicturesAreAStackWhereThatIsAsked) {
+  write_image("plane.nrrd", 3, [](std::size_t i) { return static_cast<float>(i % 2); });
+  expect_wrong_usage(
+      {"resample", "--stack", "plane.nrrd", "--labels", "plane", "--interface-error", "5%", "-o", "m.vtu"},
+      {"--stack: expected a pattern of names in quotes", "plane.nrrd"});
+  expect_wrong_usage(
+      {"resample", "--stack", "a.tif", "b.tif", "--labels", "a", "--interface-error", "5%", "-o", "m.vtu"},
+      {"--stack: expected one pattern in quotes, found 2 inputs"});
+  // Grey pictures as text, of VTK's reader and of none: stacks are of TIFF and PNG.
+  for (const char* name : {"l1.pgm", "l2.pgm"}) write(name, "P2\n2 2\n255\n0 1 1 0\n");
+  expect_failure({"resample", "--stack", "l*.pgm", "--labels", "l", "--interface-error", "5%", "-o", "m.vtu"},
+                 {"l1.pgm", "expected a picture, TIFF or PNG"});
 }
 
 TEST_F(CellSeries, OptionsOfMeshesAreRefusedForGrids) {

@@ -82,24 +82,28 @@ Vec3 middle_of(const AmrBlocks& amr, const AmrBlock& block, std::int64_t cell) {
   return p;
 }
 
-/// Expects that no point of the mesh lies inside an edge of a face.
-void expect_no_hanging_point(const MeshFile& file) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+using Place = std::array<std::int64_t, 3>;
+
+/// Expects that no point of the mesh lies inside an edge of a face. Edges run along axes, and points lie at
+/// multiples of `step`.
+void expect_no_hanging_point(const MeshFile& file, double step) {
+  const auto place = [step](const Vec3& p) {
+    return Place{std::llround(p.x / step), std::llround(p.y / step), std::llround(p.z / step)};
+  };
+  std::set<Place> places;
+  for (const Vec3& p : file.points) places.insert(place(p));
   std::size_t begin = 0;
   for (const std::uint32_t end : file.face_ends) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t a = file.face_points[i], b = file.face_points[i + 1 < end ? i + 1 : begin];
-      edges.emplace(std::min(a, b), std::max(a, b));
+      const Place a = place(file.points[file.face_points[i]]),
+                  b = place(file.points[file.face_points[i + 1 < end ? i + 1 : begin]]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        Place at = a;
+        for (at[axis] = std::min(a[axis], b[axis]) + 1; at[axis] < std::max(a[axis], b[axis]); ++at[axis])
+          ASSERT_FALSE(places.contains(at));
+      }
     }
     begin = end;
-  }
-  for (const auto& [a, b] : edges) {
-    const Vec3 &p = file.points[a], &q = file.points[b];
-    for (std::uint32_t other = 0; other < file.points.size(); ++other) {
-      if (other == a || other == b) continue;
-      const Vec3& x = file.points[other];
-      ASSERT_GT(distance(p, x) + distance(x, q), distance(p, q) + 1e-9);
-    }
   }
 }
 
@@ -132,12 +136,11 @@ TEST_P(Amr, NeighboursShareTheirFacesAcrossLevels) {
     const double edge = std::min({at.x, at.y, at.z, 1 - at.x, 1 - at.y, 1 - at.z});
     EXPECT_NEAR(edge, 0, 1e-12) << "a face inside the cube has one cell";
   }
-  expect_no_hanging_point(file);
+  expect_no_hanging_point(file, amr.spacing.back().x);
 }
 
 INSTANTIATE_TEST_SUITE_P(Hierarchies, Amr,
-                         testing::Combine(testing::Values(1u, 2u, 3u), testing::Values(2, 3),
-                                          testing::Bool()));
+                         testing::Combine(testing::Values(1u, 2u), testing::Values(2, 3), testing::Bool()));
 
 TEST(AmrCells, FlatCellsAreRectangles) {
   const AmrBlocks amr = random_blocks(5, 2, true, true);
@@ -152,8 +155,8 @@ TEST(AmrCells, FlatCellsAreRectangles) {
   }
   EXPECT_EQ(file.cell_ends.size(), cells);
   EXPECT_NEAR(area, 1, 1e-12);
-  expect_no_hanging_point(file);
-  extrude(file, 0.5);
+  expect_no_hanging_point(file, amr.spacing.back().x);
+  extrude("amr", file, 0.5);
   const PolyhedralMesh mesh =
       PolyhedralMesh::make("amr", file.points, file.face_points, file.face_ends, file.cell_ends);
   double volume = 0;

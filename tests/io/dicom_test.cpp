@@ -178,7 +178,7 @@ TEST(Dicom, WhatIsNoVolumeIsRefusedInOneLine) {
   const Scratch folder;
   std::filesystem::create_directory(folder / "ct");
   std::filesystem::create_directory(folder / "empty");
-  EXPECT_TRUE(says(error_of([&] { read_volume(folder / "empty"); }), "found a folder without any of DICOM"));
+  EXPECT_TRUE(says(error_of([&] { read_volume(folder / "empty"); }), "expected a file, found a folder"));
   SliceFile{{0, 0, 0}, pixels_of(0)}.write(folder / "ct/a");
   EXPECT_TRUE(says(error_of([&] { read_volume(folder / "ct"); }), "expected several slices, found one"));
   SliceFile second{{0, 0, 1}, pixels_of(1)};
@@ -202,6 +202,17 @@ TEST(Dicom, WhatIsNoVolumeIsRefusedInOneLine) {
   EXPECT_TRUE(says(error_of([&] { read_volume(folder / "ct"); }), "expected the orientation of"));
 }
 
+TEST(Dicom, PixelsThatAFileLacksAreNoZeros) {
+  const Scratch folder;
+  std::filesystem::create_directory(folder / "ct");
+  for (int k = 0; k < 2; ++k) {
+    SliceFile slice{{0, 0, 1.0 * k}, pixels_of(k)};
+    if (k == 1) slice.pixels.resize(5);
+    slice.write(folder / fmt::format("ct/{}", k));
+  }
+  EXPECT_TRUE(says(error_of([&] { read_volume(folder / "ct"); }), "expected 24 bytes of pixels, found 10"));
+}
+
 TEST(Dicom, ASeriesIsChosenByItsDescription) {
   const Scratch folder;
   std::filesystem::create_directory(folder / "ct");
@@ -222,20 +233,22 @@ std::string segmentation(bool fractional) {
   for (const auto& [number, label] : {std::pair(1u, "liver"), std::pair(2u, "tumour")})
     segments.push_back(short_number(0x62, 4, number) + element(0x62, 5, "LO", label));
   std::string pixels;
-  for (const auto& [z, segment] : {std::pair(2, 1u), std::pair(0, 1u), std::pair(1, 2u)}) {
+  for (const auto& [z, segment] : {std::pair(2, 1u), std::pair(0, 1u), std::pair(1, 2u), std::pair(1, 1u)}) {
     frames.push_back(sequence(0x20, 0x9113, {element(0x20, 0x32, "DS", triple({0, 0, 3.0 * z}))}) +
                      sequence(0x62, 0xa, {short_number(0x62, 0xb, segment)}));
     for (int i = 0; i < 16; ++i) {
       if (fractional) pixels += static_cast<char>(i < 8 ? 200 : 50);
     }
-    if (!fractional) pixels += std::string("\x0f", 1) + std::string("\xf0", 1);
+    // At the place that both segments have, the first one has other voxels.
+    const bool shared = z == 1 && segment == 1;
+    if (!fractional) pixels += shared ? std::string("\xf0\x00", 2) : std::string("\x0f\xf0", 2);
   }
   const unsigned bits = fractional ? 8 : 1;
   return file_bytes(
       storage,
       element(8, 0x16, "UI", storage) + element(8, 0x18, "UI", "1.2.3.9") + element(8, 0x60, "CS", "SEG") +
           element(0x20, 0xe, "UI", "1.2.3") + short_number(0x28, 2, 1) +
-          element(0x28, 4, "CS", "MONOCHROME2") + element(0x28, 8, "IS", "3") + short_number(0x28, 0x10, 2) +
+          element(0x28, 4, "CS", "MONOCHROME2") + element(0x28, 8, "IS", "4") + short_number(0x28, 0x10, 2) +
           short_number(0x28, 0x11, 8) + short_number(0x28, 0x100, bits) + short_number(0x28, 0x101, bits) +
           short_number(0x28, 0x102, bits - 1) + short_number(0x28, 0x103, 0) +
           element(0x62, 1, "CS", fractional ? "FRACTIONAL" : "BINARY") + sequence(0x62, 2, segments) +
@@ -243,7 +256,7 @@ std::string segmentation(bool fractional) {
           sequence(0x5200, 0x9229,
                    {sequence(0x20, 0x9116, {element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0")}) +
                     sequence(0x28, 0x9110,
-                             {element(0x18, 0x50, "DS", "3") + element(0x28, 0x30, "DS", "1\\1")})}) +
+                             {element(0x18, 0x50, "DS", "3") + element(0x28, 0x30, "DS", "0.5\\0.25")})}) +
           sequence(0x5200, 0x9230, frames) + element(0x7fe0, 0x10, "OB", pixels));
 }
 
@@ -252,13 +265,14 @@ TEST(Dicom, SegmentationsAreLabelsWithNames) {
   put_bytes(folder / "seg.dcm", segmentation(false));
   const MultiMaterialData data = read_multi_material_data(folder / "seg.dcm", {}, SilentProgress::instance());
   ASSERT_EQ(data.materials.size(), 3u);
+  EXPECT_EQ(data.grid.domain().size(), (Vec3{8 * 0.25, 2 * 0.5, 3 * 3}));
   EXPECT_EQ(data.materials[MaterialId(0)], "background");
   EXPECT_EQ(data.materials[MaterialId(1)], "liver");
   EXPECT_EQ(data.materials[MaterialId(2)], "tumour");
   for (std::size_t z = 0; z < 3; ++z) {
     for (std::size_t i = 0; i < 16; ++i) {
       const bool inside = i < 4 || i >= 12;
-      const std::size_t expected = !inside ? 0 : (z == 1 ? 2 : 1);
+      const std::size_t expected = inside ? (z == 1 ? 2 : 1) : z == 1 && i < 8 ? 1 : 0;
       EXPECT_EQ(data.fraction(MaterialId(expected), 16 * z + i), 1.0f) << z << " " << i;
     }
   }

@@ -102,6 +102,26 @@ TEST(Labels, AreExactInEveryTypeAndFormat) {
   }
 }
 
+TEST(Labels, OfSegmentationsOfSlicerHaveTheirNames) {
+  const test::Scratch scratch;
+  put_bytes(scratch / "brain.seg.nrrd",
+            "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 1 2\nencoding: raw\nSegment0_ID:=Segment_1\n"
+            "Segment0_LabelValue:=4\nSegment0_Name:=grey matter\nSegment0_Layer:=0\nSegment1_Name:=vessel\n"
+            "Segment1_LabelValue:=1\n\n" +
+                std::string("\0\1\4\4\7\0", 6));
+  MaterialDataOptions options;
+  const MultiMaterialData data = read_multi_material_data(scratch / "brain.seg.nrrd", options);
+  EXPECT_EQ(std::vector<std::string>(data.materials.begin(), data.materials.end()),
+            (std::vector<std::string>{"background", "vessel", "grey matter", "7"}));
+  EXPECT_TRUE(data.labels == SiteArray<std::uint16_t>({0, 1, 2, 2, 3, 0}));
+  // Names that are given come before those of the file.
+  options.labels = "labels";
+  options.label_names = {{7, "stem"}, {1, "artery"}};
+  const MultiMaterialData named = read_multi_material_data(scratch / "brain.seg.nrrd", options);
+  EXPECT_EQ(std::vector<std::string>(named.materials.begin(), named.materials.end()),
+            (std::vector<std::string>{"background", "artery", "grey matter", "stem"}));
+}
+
 TEST(Labels, OfAStackOfPicturesAreExact) {
   const test::Scratch scratch;
   // tiff_of() makes pictures of 3 x 2 pixels.
@@ -122,7 +142,7 @@ TEST(Labels, OfAStackOfPicturesAreExact) {
   EXPECT_EQ(data.grid.nodes[0], (std::vector<double>{9.75, 10.25, 10.75, 11.25}));
   put_bytes(scratch / "l3.tif", test::tiff_of(std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}, false));
   EXPECT_TRUE(test::says(test::error_of([&] { read_multi_material_data(scratch / "l*.tif", options); }),
-                         "expected 3 x 2 pixels of uint32"));
+                         "expected 3 x 2 samples of uint32"));
   EXPECT_TRUE(test::says(test::error_of([&] { read_multi_material_data(scratch / "none*.tif", options); }),
                          "none*.tif"));
 }

@@ -58,13 +58,25 @@ void Hdf5File::add(const std::string& name, const std::vector<std::uint64_t>& si
 void Hdf5File::add_numbers(const std::string& name, const char* attribute_name,
                            const std::vector<double>& numbers) {
   const hsize_t count = numbers.size();
-  const hid_t set = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);
+  const hid_t object = H5Oopen(file_, name.c_str(), H5P_DEFAULT);
   const hid_t line = H5Screate_simple(1, &count, nullptr);
-  const hid_t attribute = H5Acreate2(set, attribute_name, H5T_IEEE_F64LE, line, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t attribute = H5Acreate2(object, attribute_name, H5T_IEEE_F64LE, line, H5P_DEFAULT, H5P_DEFAULT);
   H5Awrite(attribute, H5T_NATIVE_DOUBLE, numbers.data());
   H5Aclose(attribute);
   H5Sclose(line);
-  H5Dclose(set);
+  H5Oclose(object);
+}
+
+void Hdf5File::add_text(const std::string& name, const char* attribute_name, const std::string& text) {
+  const hid_t object = H5Oopen(file_, name.c_str(), H5P_DEFAULT), type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, text.size());
+  const hid_t one = H5Screate(H5S_SCALAR);
+  const hid_t attribute = H5Acreate2(object, attribute_name, type, one, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, text.data());
+  H5Aclose(attribute);
+  H5Sclose(one);
+  H5Tclose(type);
+  H5Oclose(object);
 }
 
 }  // namespace adamas::test

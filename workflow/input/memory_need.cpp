@@ -78,6 +78,8 @@ bool may_be_runs(const VolumeSource& source) {
 /// name of the array of labels, or any if the file has one array only; none if labels are in no array of it.
 std::optional<HeaderFacts> facts_of(const std::filesystem::path& path,
                                     const std::optional<std::string>& labels) {
+  // Of a pattern of pictures and of a folder there is no one header.
+  if (io::is_file_pattern(path) || std::filesystem::is_directory(path)) return {};
   const InputFormat* format = find_input_format(path);
   if (format == nullptr) return {};
   if (format->read_header != nullptr) {

@@ -14,6 +14,7 @@
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
+#include "core/io/labelled_network.h"
 #include "core/io/mesh_data_reader.h"
 #include "core/io/multi_material_reader.h"
 #include "interfaces/api/input.h"
@@ -111,6 +112,20 @@ std::string mesh_option(const MaterialDataOptions& data) {
   return data.time ? "--time" : "";
 }
 
+/// Returns the options of the data with what the other options say of them; notes go to the progress.
+MaterialDataOptions data_options(const InputOptions& options, Progress& progress) {
+  MaterialDataOptions how = options.data;
+  if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
+  if (options.stack) {
+    how.stack_spacing = options.raw.spacing;
+    how.stack_origin = options.raw.origin;
+  }
+  if (!options.region_names.empty() && !how.labels.empty()) {
+    how.label_names = parse_region_names(read_file(options.region_names), options.region_names.string());
+  }
+  return how;
+}
+
 /// Returns whether the options or the main file name materials.
 bool has_materials(const InputOptions& options) {
   if (!options.material_option().empty()) return true;
@@ -176,7 +191,7 @@ std::string InputOptions::grid_option(const std::string& reconstruction) const {
 }
 
 std::string InputOptions::interface_option() const {
-  if (!region_names.empty()) return "--region-names";
+  if (!region_names.empty() && data.labels.empty()) return "--region-names";
   if (box) return "--box";
   if (mending.gaps) return "--weld";
   return mending.tolerant ? "--tolerant" : "";
@@ -218,11 +233,11 @@ void check(const ReconstructOptions& options, const InputOptions& input) {
 }
 
 void check_region_names(const InputOptions& options) {
-  if (options.region_names.empty()) return;
+  if (options.region_names.empty() || !options.data.labels.empty()) return;
   const std::string extension = file_extension(options.path);
   const bool has_names = extension == ".vtp" || extension == ".ply";
   if (options.path.empty() || has_names || input_kind(options.path) != InputKind::kNetwork)
-    wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
+    wrong_usage("--region-names: expected --labels, or a labelled network (.arec, .txt) as INPUT");
 }
 
 Input read_input(const InputOptions& options, Progress& progress) {
@@ -235,6 +250,9 @@ namespace workflow {
 std::optional<RawVolume> raw_volume_of(const InputOptions& options) {
   std::optional<RawVolume> raw = raw_volume(options.raw);
   if (options.stack) {
+    if (!is_file_pattern(options.path))
+      wrong_usage("--stack: expected a pattern of names in quotes, as \"labels_*.tif\", found {}",
+                  options.path.string());
     RawOptions rest = options.raw;
     rest.spacing = rest.origin = {};
     if (const std::string option = rest.option(); !option.empty())
@@ -269,12 +287,7 @@ MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
   if (const std::string option = mesh_option(options.data); !option.empty())
     wrong_usage("{}: expected a mesh of cells as INPUT, found {}", option, options.path.string());
   const std::optional<RawVolume> raw = raw_volume_of(options);
-  MaterialDataOptions how = options.data;
-  if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
-  if (options.stack) {
-    how.stack_spacing = options.raw.spacing;
-    how.stack_origin = options.raw.origin;
-  }
+  const MaterialDataOptions how = data_options(options, progress);
   check_input_file(options.path);
   const std::string path = options.path.string();
   switch (input_kind(options.path)) {
@@ -299,8 +312,7 @@ MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
 MeshData load_mesh_data(const InputOptions& options, Progress& progress) {
   if (const std::string option = options.raw.option(); !option.empty())
     wrong_usage("{}: expected a file without a header, found {}", option, options.path.string());
-  MaterialDataOptions how = options.data;
-  if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
+  const MaterialDataOptions how = data_options(options, progress);
   check_input_file(options.path);
   MeshData data = read_mesh_data(options.path, how, progress);
   note_mended_fractions(data.report, data.source, progress);

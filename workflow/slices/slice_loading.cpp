@@ -61,9 +61,7 @@ void load_original(const SliceRequest& request, const InputOptions& options, Pro
   const bool given = has_given_interfaces(options);
   if (given) refuse_reconstruction(reconstruction_of(request));
   if (given) input.interfaces = read_given_interfaces(options);
-  if (!given && !options.region_names.empty()) {
-    wrong_usage("--region-names: expected a labelled network (.arec, .txt)");
-  }
+  if (!given) check_region_names(options);
   if (!gridded && given) {
     const std::string option = grid_option(request, false);
     if (option.empty()) return;
@@ -115,9 +113,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
   if (!meshed && !request.original.empty())
     wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", path);
   if (kind == InputKind::kNetwork || kind == InputKind::kCells) {
-    InputOptions of_mesh = options;
-    if (kind == InputKind::kCells) of_mesh.data.time = request.volume.time;
-    LoadedInput read = load_input(of_mesh, reconstruction_of(request), progress);
+    LoadedInput read = load_input(options, reconstruction_of(request), progress);
     input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
     input.network = std::move(read.source);
     input.cells = std::move(read.cells);
