@@ -206,24 +206,45 @@ class TruchasReader {
     const std::size_t corners = cells.row();
     if (corners != 4 && corners != 8)
       fail("{}: {}: expected cells of 4 or 8 points, found {}", source_.name(), kCells, corners);
-    for (std::size_t p = 0; p < points.size[0]; ++p)
-      file_.points.push_back({points.values[3 * p], points.values[3 * p + 1], points.values[3 * p + 2]});
+    point_count_ = points.size[0];
+    const std::vector<std::uint32_t> numbers = add_points(points);
     std::vector<std::uint32_t> face;
     for (std::size_t c = 0; c < cells.size[0]; ++c) {
       for (const auto& places : corners == 8 ? kHexahedronFaces : kTetrahedronFaces) {
         face.clear();
         for (const std::size_t place : places) {
           const double number = cells.values[corners * c + place] - 1;
-          if (!(number >= 0 && number < static_cast<double>(file_.points.size())))
-            fail("{}: {}: expected points from 1 to {}, found {}", source_.name(), kCells,
-                 file_.points.size(), number + 1);
-          face.push_back(static_cast<std::uint32_t>(number));
+          if (!(number >= 0 && number < static_cast<double>(numbers.size())))
+            fail("{}: {}: expected points from 1 to {}, found {}", source_.name(), kCells, numbers.size(),
+                 number + 1);
+          face.push_back(numbers[static_cast<std::size_t>(number)]);
         }
         append_face(face, file_);
       }
       if (!end_cell(file_))
         fail("{}: {}: expected cells that enclose a volume, found cell {}", source_.name(), kCells, c);
     }
+  }
+
+  /// Adds the points, of which those at one place are one: meshes are cut along internal interfaces. Returns
+  /// their numbers in the mesh.
+  std::vector<std::uint32_t> add_points(const Numbers& points) {
+    std::vector<Vec3> all;
+    Box3 box;
+    for (std::size_t p = 0; p < points.size[0]; ++p) {
+      all.push_back({points.values[3 * p], points.values[3 * p + 1], points.values[3 * p + 2]});
+      if (!is_finite(all.back()))
+        fail("{}: {}: expected finite coordinates, found others", source_.name(), kPoints);
+      box.extend(all.back());
+    }
+    PointMerger merger(PointMerger::kCoincident * std::max(box.diagonal(), 1e-300), file_.points);
+    std::vector<std::uint32_t> numbers;
+    for (const Vec3& p : all) {
+      const std::size_t before = file_.points.size();
+      numbers.push_back(merger.number(p));
+      if (file_.points.size() > before) taken_points_.push_back(numbers.size() - 1);
+    }
+    return numbers;
   }
 
   /// Adds the values of cells or points at a time, and passes over others.
@@ -233,16 +254,26 @@ class TruchasReader {
     const hsize_t components = found->size.size() == 2 ? found->size[1] : 1;
     const bool of_points = source_.text(path, "FIELDTYPE") == "NODE";
     if (components < 1 || components > kMostComponents ||
-        found->size[0] != (of_points ? file_.points.size() : file_.cell_ends.size()))
+        found->size[0] != (of_points ? point_count_ : file_.cell_ends.size()))
       return;
     std::vector<std::string> names;
     for (hsize_t c = 1; components > 1 && c <= components; ++c)
       names.push_back(source_.text(path, "FIELDNAME" + std::to_string(c)));
     if (set == "VOF") return add_fractions(source_.read(path), names);
     const std::string own = source_.text(path, "FIELDNAME");
-    add_array(own.empty() ? set : own, of_points ? Centering::kPoints : Centering::kCells, source_.read(path),
-              static_cast<int>(components), file_);
+    const Numbers all = source_.read(path);
+    add_array(own.empty() ? set : own, of_points ? Centering::kPoints : Centering::kCells,
+              of_points ? values_of_taken(all) : all, static_cast<int>(components), file_);
     if (std::ranges::find(names, "") == names.end()) file_.arrays.back().component_names = names;
+  }
+
+  /// The values of the points that the mesh has.
+  [[nodiscard]] Numbers values_of_taken(const Numbers& all) const {
+    Numbers own{all.type, {taken_points_.size()}, {}};
+    for (const std::size_t p : taken_points_)
+      own.values.insert(own.values.end(), all.values.begin() + static_cast<std::ptrdiff_t>(p * all.row()),
+                        all.values.begin() + static_cast<std::ptrdiff_t>((p + 1) * all.row()));
+    return own;
   }
 
   /// Adds the volume fractions of materials, one in each component, as arrays that are found by their names.
@@ -269,10 +300,12 @@ class TruchasReader {
     for (const double number : numbers.values) file_.block_of_cell.push_back(blocks.at(number));
   }
 
-  static constexpr hsize_t kMostComponents = 4096;
+  static constexpr hsize_t kMostComponents = 4096;  // of an array
   static constexpr std::size_t kMostBlocks = 65535;
 
   const Hdf5Meshes& source_;
+  std::size_t point_count_ = 0;            // in the file
+  std::vector<std::size_t> taken_points_;  // the first of those at each place
   MeshFile file_;
 };
 

@@ -75,7 +75,8 @@ TEST_F(CellSeries, FieldsAreCutAndIntegrated) {
   EXPECT_EQ(cut.status, 0) << cut.err;
   const auto told = run(command("probe", {"--json", "probe.json", "--time", "2"}));
   EXPECT_EQ(told.status, 0) << told.err;
-  const auto& water = read_json("probe.json")["materials"][0];
+  const nlohmann::json probed = read_json("probe.json");
+  const auto& water = probed["materials"][0];
   EXPECT_NEAR(water["volume"].get<double>(), volumes_[2], 1e-5);
 }
 
