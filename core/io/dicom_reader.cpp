@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <memory>
@@ -21,9 +20,7 @@
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
-#include "core/io/input_formats.h"
 #include "core/io/material_arrays.h"
-#include "core/io/volume_import.h"
 
 namespace adamas::io {
 
@@ -517,22 +514,6 @@ Series choose(const std::string& name, std::map<std::string, Series> series, con
 
 }  // namespace
 
-bool is_dicom_file(const std::filesystem::path& path) {
-  // Other files of a folder may be empty, unreadable or gone.
-  std::array<char, 132> bytes{};
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(bytes.data(), bytes.size());
-  return stream.good() && std::string_view(bytes.data() + 128, 4) == "DICM";
-}
-
-bool is_dicom_folder(const std::filesystem::path& path) {
-  std::error_code code;
-  for (std::filesystem::directory_iterator at(path, code), end; !code && at != end; at.increment(code)) {
-    if (at->is_regular_file(code) && is_dicom_file(at->path())) return true;
-  }
-  return false;
-}
-
 GridFile read_dicom(const std::filesystem::path& path, const std::string& series) {
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
@@ -552,18 +533,6 @@ GridFile read_dicom(const std::filesystem::path& path, const std::string& series
   GridFile file = reader.grid();
   if (!remark.empty()) file.remark += (file.remark.empty() ? "" : "; ") + remark;
   return file;
-}
-
-InputFormat dicom_format() {
-  return {.name = "DICOM",
-          .endings = ".dcm",
-          .more_endings = ".dicom .ima",
-          .shown_by =
-              [](std::string_view bytes) { return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM"; },
-          .read_grid = read_grid_by_library,
-          .find_volume = import_grid,
-          .several_arrays = true,
-          .of_folders = true};
 }
 
 }  // namespace adamas::io

@@ -5,7 +5,6 @@
 
 #include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/io/dicom_reader.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
@@ -65,8 +64,8 @@ GridFile read_by_format(const std::filesystem::path& path, const GridReading& re
     return grid_of(raw_image(path, *reading.raw), path, reading);
   const InputFormat* format = find_input_format(path);
   if (format == nullptr || !format->gives_grids())
-    fail("{}: expected data on a grid ({}) or bare samples (--dimensions, --type), found something else",
-         path.string(), list_grid_endings("or"));
+    fail("{}: expected data on a grid ({}) or bare samples (--dimensions, --type), found {}", path.string(),
+         list_grid_endings("or"), name_unread_format(path));
   return format->read_grid != nullptr ? format->read_grid(path)
                                       : grid_of(format->read_header(path), path, reading);
 }
@@ -143,17 +142,6 @@ std::string names_of(const std::vector<GridArray>& arrays) {
   std::string names;
   for (const GridArray& array : arrays) names += (names.empty() ? "'" : ", '") + array.name + "'";
   return names.empty() ? "no array" : names;
-}
-
-void send_grid(const ReaderRequest& request, ByteSink& sink) {
-  const std::filesystem::path path = request.paths.front();
-  sink.put(request.reader == LibraryReader::kHdf5Grid ? read_hdf5_grid(path)
-                                                      : read_grid_in_process(path, request.array));
-}
-
-GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series) {
-  const InputFormat* format = find_input_format(path);
-  return format != nullptr && format->of_folders ? read_dicom(path, series) : read_grid_with_vtk(path);
 }
 
 GridFile read_grid_by_library(const std::filesystem::path& path) {

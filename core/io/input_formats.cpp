@@ -1,7 +1,10 @@
 #include "core/io/input_formats.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "core/base/error.h"
@@ -103,6 +106,26 @@ const InputFormat* find_input_format(const std::filesystem::path& path) {
     return format.shown_by != nullptr && format.shown_by(beginning);
   });
   return found == formats.end() ? nullptr : &*found;
+}
+
+std::string name_unread_format(const std::filesystem::path& path) {
+  std::array<char, 256> bytes{};
+  const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
+  const std::string_view beginning(bytes.data(), size);
+  constexpr const char* kMeshio = "'meshio convert' makes a .vtu of it";
+  if (beginning.starts_with(std::string_view("spydata", 7)))
+    return "a dump of CTH: ParaView reads it and saves .vthb";
+  if (beginning.starts_with("MFEM")) return "a mesh of MFEM, which can save .vtu itself";
+  if (beginning.starts_with("$MeshFormat")) return fmt::format("a mesh of Gmsh: {}", kMeshio);
+  if (beginning.starts_with("*HEADING") || beginning.starts_with("*Heading"))
+    return fmt::format("a mesh of Abaqus: {}", kMeshio);
+  if (beginning.starts_with("*KEYWORD")) return fmt::format("a mesh of LS-DYNA: {}", kMeshio);
+  if (beginning.find("type: ensight") != std::string_view::npos ||
+      beginning.find("type:\tensight") != std::string_view::npos)
+    return "a case of EnSight: ParaView reads it and saves .vtu";
+  if (beginning.starts_with("CDF")) return "netCDF: the ending of ExodusII has to be .exo, .e or .ex2";
+  if (beginning.starts_with("#!TDV")) return "a file of Tecplot: ParaView reads it and saves .vtu";
+  return "something else";
 }
 
 InputKind kind_by_format(const std::filesystem::path& path) {

@@ -78,6 +78,9 @@ std::span<const InputFormat> input_formats();
 const InputFormat* find_input_format(const std::filesystem::path& path);
 /// The format by a file's extension; null if there is none.
 const InputFormat* find_format_by_name(const std::filesystem::path& path);
+/// What a file is that is not read, with the way round, for messages: "a dump of CTH (...)"; "something else"
+/// if that is not known.
+std::string name_unread_format(const std::filesystem::path& path);
 /// The kind of data in a file, by its extension, and by its header if that extension may be of a surface or a
 /// network (.ply). Files of unknown extensions are grids.
 InputKind kind_by_format(const std::filesystem::path& path);

@@ -23,12 +23,6 @@
 
 namespace adamas::io {
 
-template <>
-inline constexpr auto kSentMembers<MeshFile> =
-    std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points,  &MeshFile::face_ends,
-               &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,       &MeshFile::material_names,
-               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell};
-
 namespace {
 
 /// Throws unless the sizes that the reader has set fit each other, before its arrays are indexed.
@@ -66,15 +60,25 @@ InputFormat cells_format() {
 
 namespace {
 
-/// The programs whose meshes are read of HDF5.
-enum class Hdf5Origin : std::uint8_t {
-  kNone,
-  kSilo,
-  kMesh,  ///< Truchas, FLASH, or AMR of VTKHDF
-  kVtk,   ///< an unstructured grid of VTKHDF
-};
+bool is_legacy_mesh(const std::filesystem::path& path) {
+  std::array<char, 1024> bytes{};
+  const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
+  const std::string_view beginning(bytes.data(), size);
+  return beginning.find("DATASET UNSTRUCTURED_GRID") != std::string_view::npos ||
+         beginning.find("DATASET STRUCTURED_GRID") != std::string_view::npos;
+}
 
-/// Finds which program wrote a file of HDF5, by names that stand near its beginning or its end.
+/// Returns whether the name that resampled meshes have is missing at the beginning of a file, where adamas
+/// writes it.
+bool is_foreign_vtu(const std::filesystem::path& path) {
+  std::string bytes(std::size_t{1} << 20, '\0');
+  const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
+  return std::string_view(bytes).substr(0, size).find(fmt::format("Name=\"{}\"", kResampledVersion)) ==
+         std::string_view::npos;
+}
+
+}  // namespace
+
 Hdf5Origin hdf5_origin(const std::filesystem::path& path) {
   const std::string extension = file_extension(path);
   if (extension == ".silo" || extension == ".pdb") return Hdf5Origin::kSilo;
@@ -103,47 +107,12 @@ Hdf5Origin hdf5_origin(const std::filesystem::path& path) {
   return Hdf5Origin::kNone;
 }
 
-bool is_legacy_mesh(const std::filesystem::path& path) {
-  std::array<char, 1024> bytes{};
-  const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
-  const std::string_view beginning(bytes.data(), size);
-  return beginning.find("DATASET UNSTRUCTURED_GRID") != std::string_view::npos ||
-         beginning.find("DATASET STRUCTURED_GRID") != std::string_view::npos;
-}
-
-/// Returns whether the name that resampled meshes have is missing at the beginning of a file, where adamas
-/// writes it.
-bool is_foreign_vtu(const std::filesystem::path& path) {
-  std::string bytes(std::size_t{1} << 20, '\0');
-  const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
-  return std::string_view(bytes).substr(0, size).find(fmt::format("Name=\"{}\"", kResampledVersion)) ==
-         std::string_view::npos;
-}
-
-}  // namespace
-
 bool is_mesh_by_header(const std::filesystem::path& path) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code)) return false;
   const std::string extension = file_extension(path);
   if (extension == ".vtk") return is_legacy_mesh(path);
   return extension == ".vtu" ? is_foreign_vtu(path) : hdf5_origin(path) != Hdf5Origin::kNone;
-}
-
-void send_cells(const ReaderRequest& request, ByteSink& sink) {
-  const std::filesystem::path path = request.paths.front();
-  const Hdf5Origin origin = hdf5_origin(path);
-  if (request.reader == LibraryReader::kCellTimes)
-    return sink.put(origin == Hdf5Origin::kMesh ? hdf5_mesh_times(path) : mesh_times_with_vtk(path));
-  switch (origin) {
-    case Hdf5Origin::kSilo:
-      return sink.put(read_silo_mesh(path));
-    case Hdf5Origin::kMesh:
-      return sink.put(read_hdf5_mesh(path, request.time));
-    case Hdf5Origin::kVtk:
-    case Hdf5Origin::kNone:
-      return sink.put(read_mesh_with_vtk(path, request.time));
-  }
 }
 
 void fail_for_time(const std::string& name, std::size_t count, std::uint64_t time) {

@@ -27,6 +27,17 @@ struct MeshFile {
   void add_remark(const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; }
 };
 
+/// The programs whose meshes are read of HDF5.
+enum class Hdf5Origin : std::uint8_t {
+  kNone,
+  kSilo,
+  kMesh,  ///< Truchas, FLASH, or AMR of VTKHDF
+  kVtk,   ///< an unstructured grid of VTKHDF
+};
+
+/// Finds which program wrote a file of HDF5, by names that stand near its beginning or its end.
+Hdf5Origin hdf5_origin(const std::filesystem::path& path);
+
 /// Whether a file has cells of a simulation although its ending may be of another kind, by its header: a
 /// legacy VTK file (.vtk) of a structured or unstructured grid, HDF5 of Silo, and a .vtu that adamas has not
 /// written as a resampled mesh.

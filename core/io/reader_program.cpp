@@ -28,35 +28,6 @@ namespace {
 /// The memory that the reader of a small file of arrays may take, including its libraries.
 constexpr std::uint64_t kReaderBytes = std::uint64_t{2} << 30;
 
-/// The version is compared, since a program of another version may send other data.
-const std::string kVersion = ADAMAS_VERSION;
-
-void run_reader(const ReaderRequest& request, ByteSink& sink) {
-  switch (request.reader) {
-    case LibraryReader::kGrid:
-    case LibraryReader::kHdf5Grid:
-      return send_grid(request, sink);
-    case LibraryReader::kMesh:
-      return send_mesh(request, sink);
-    case LibraryReader::kCells:
-    case LibraryReader::kCellTimes:
-      return send_cells(request, sink);
-    case LibraryReader::kPolygons:
-      return send_polygons(request, sink);
-    case LibraryReader::kGridVolume:
-      return send_grid_volume(request, sink);
-    case LibraryReader::kHdf5Volume:
-      return send_hdf5_volume(request, sink);
-    case LibraryReader::kHdf5Steps:
-      return send_hdf5_steps(request, sink);
-    case LibraryReader::kStackVolume:
-      return send_stack_volume(request, sink);
-    case LibraryReader::kArrays:
-      return send_arrays(request, sink);
-  }
-  fail("{}: expected a reader, found none of that number", request.name);
-}
-
 ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out) {
   ChildSetup setup;
   setup.program = find_own_program(kReaderProgram, kReaderVariable);
@@ -109,6 +80,8 @@ class Descriptor {
 
 }  // namespace
 
+std::string reader_version() { return ADAMAS_VERSION; }
+
 ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path) {
   ReaderRequest request{reader, path.string(), check_input_file(path), {path.string()}};
   // These files stand for others beside them.
@@ -128,7 +101,7 @@ void read_in_child(const ReaderRequest& request, const std::function<void(ByteSo
   ::fcntl(input.number(), F_SETPIPE_SZ, static_cast<int>(kFrameBytes));
   const MemoryFile question("adamas-request");
   ByteSink sink(question.descriptor());
-  sink.put(kVersion);
+  sink.put(reader_version());
   sink.put(request);
   sink.finish();
   ::lseek(question.descriptor(), 0, SEEK_SET);
@@ -141,37 +114,6 @@ void read_in_child(const ReaderRequest& request, const std::function<void(ByteSo
   } catch (const TruncatedStream&) {
     fail_stopped(request.name, child.wait());
   }
-}
-
-int run_reader_program() {
-  // What libraries print must not get into the data that are sent.
-  ByteSink sink(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3));
-  ::dup2(STDERR_FILENO, STDOUT_FILENO);
-  ReaderRequest request;
-  std::string failure;
-  try {
-    ByteSource source(STDIN_FILENO);
-    if (const auto version = source.get<std::string>(); version != kVersion)
-      fail("expected the program adamas-reader of version {}, found that of {}", version, kVersion);
-    source.get(request);
-    source.expect_end();
-    run_reader(request, sink);
-    sink.finish();
-    return 0;
-  } catch (const TruncatedStream&) {
-    std::fputs("adamas-reader: expected a request of adamas, found something else\n", stderr);
-    return 1;
-  } catch (const Error& error) {
-    failure = error.what();
-  } catch (const std::bad_alloc&) {
-    failure = request.name + ": expected data that fit into memory, found more";
-  } catch (const std::exception& error) {
-    failure = request.name + ": could not be read: " + error.what();
-  } catch (...) {
-    failure = request.name + ": could not be read";
-  }
-  sink.finish_with_error(failure);
-  return 0;
 }
 
 }  // namespace adamas::io

@@ -54,6 +54,9 @@ inline constexpr auto kSentMembers<NamedArray> =
 /// A request to read one file, which is checked (check_input_file).
 ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path);
 
+/// The version of the program, which is compared, since one of another version may send other data.
+std::string reader_version();
+
 /// The environment variable that says where adamas-reader is.
 inline constexpr const char* kReaderVariable = "ADAMAS_READER_PROGRAM";
 /// The name of the program.
@@ -77,7 +80,8 @@ T receive_from_child(const ReaderRequest& request) {
 /// standard output. Returns the program's status.
 int run_reader_program();
 
-/// The readers, which run in adamas-reader. Each is in the file of the function that receives its data.
+/// The readers, which run in adamas-reader. Those of grids and of cells are in senders.cpp, so that their
+/// libraries are linked for it alone; each other one is in the file of the function that receives its data.
 void send_grid(const ReaderRequest& request, ByteSink& sink);
 void send_mesh(const ReaderRequest& request, ByteSink& sink);
 void send_cells(const ReaderRequest& request, ByteSink& sink);

@@ -2,6 +2,7 @@
 
 #include "core/io/framed_bytes.h"
 #include "core/io/grid_file.h"
+#include "core/io/mesh_file.h"
 
 namespace adamas::io {
 
@@ -16,6 +17,12 @@ template <>
 inline constexpr auto kSentMembers<GridFile> =
     std::tuple{&GridFile::kind,  &GridFile::nodes,  &GridFile::arrays, &GridFile::material_names,
                &GridFile::faces, &GridFile::aslant, &GridFile::space,  &GridFile::remark};
+
+template <>
+inline constexpr auto kSentMembers<MeshFile> =
+    std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points,  &MeshFile::face_ends,
+               &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,       &MeshFile::material_names,
+               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell};
 
 /// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold
 /// all characters.

@@ -1,0 +1,41 @@
+// What is known of DICOM without its library.
+
+#include <array>
+#include <fstream>
+#include <string_view>
+
+#include "core/io/dicom_reader.h"
+#include "core/io/input_formats.h"
+#include "core/io/volume_import.h"
+
+namespace adamas::io {
+
+bool is_dicom_file(const std::filesystem::path& path) {
+  // Other files of a folder may be empty, unreadable or gone.
+  std::array<char, 132> bytes{};
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(bytes.data(), bytes.size());
+  return stream.good() && std::string_view(bytes.data() + 128, 4) == "DICM";
+}
+
+bool is_dicom_folder(const std::filesystem::path& path) {
+  std::error_code code;
+  for (std::filesystem::directory_iterator at(path, code), end; !code && at != end; at.increment(code)) {
+    if (at->is_regular_file(code) && is_dicom_file(at->path())) return true;
+  }
+  return false;
+}
+
+InputFormat dicom_format() {
+  return {.name = "DICOM",
+          .endings = ".dcm",
+          .more_endings = ".dicom .ima",
+          .shown_by =
+              [](std::string_view bytes) { return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM"; },
+          .read_grid = read_grid_by_library,
+          .find_volume = import_grid,
+          .several_arrays = true,
+          .of_folders = true};
+}
+
+}  // namespace adamas::io
