@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -59,6 +60,12 @@ void add_places(const VolumeGrid& grid, Figures& figures) {
   add_axes(grid, figures);
 }
 
+/// Returns a value of an array: whole numbers, such as labels, with all digits.
+std::string value_text(const ArraySummary& array, double value) {
+  const bool whole = array.type.find("int") != std::string::npos && value == std::round(value);
+  return whole ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
+}
+
 /// Prints the numbers of points and cells, the box, axes and space.
 void print_grid(const FileSummary& s, Console& console, Figures& figures) {
   if (s.nodes[0] > 0) {
@@ -93,8 +100,7 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
                                  {"min", ranged ? Figures(a.min) : Figures(nullptr)},
                                  {"max", ranged ? Figures(a.max) : Figures(nullptr)}});
     rows.push_back({a.name, a.location, a.type, std::to_string(a.components),
-                    ranged ? fmt::format("{:.6g}", a.min) : "-",
-                    ranged ? fmt::format("{:.6g}", a.max) : "-"});
+                    ranged ? value_text(a, a.min) : "-", ranged ? value_text(a, a.max) : "-"});
   }
   if (rows.size() > 1) console.table(rows);
 }

@@ -2,10 +2,14 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/io/grid_file.h"
 
 namespace adamas::io {
+
+/// The name of the format.
+inline constexpr std::string_view kDicom = "DICOM";
 
 /// Whether a file is one of DICOM, by its first bytes.
 bool is_dicom_file(const std::filesystem::path& path);

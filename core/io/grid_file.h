@@ -120,7 +120,9 @@ GridFile read_grid_file(const std::filesystem::path& path, const GridReading& re
 /// VTK. The library may crash on a corrupt file, so it runs in a child process (read_in_child).
 GridFile read_grid_by_library(const std::filesystem::path& path);
 /// Reads a file as read_grid_by_library does, but in this process. `series`: as for read_dicom().
-GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series = {});
+/// `time`: as for read_zarr().
+GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series = {},
+                              std::optional<std::uint64_t> time = {});
 /// Reads a file of VTK, TIFF or a picture in this process.
 GridFile read_grid_with_vtk(const std::filesystem::path& path);
 

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/io/dicom_reader.h"
+#include "core/io/input_formats.h"
 #include "core/io/volume_stack.h"
 
 namespace adamas::io {
@@ -27,7 +27,7 @@ std::size_t check_input_file(const std::filesystem::path& path) {
   }
   if (code) fail("{}: expected a readable file: {}", path.string(), code.message());
   if (status.type() == std::filesystem::file_type::directory) {
-    if (is_dicom_folder(path)) return static_cast<std::size_t>(size_of_folder(path));
+    if (find_format_by_name(path) != nullptr) return static_cast<std::size_t>(size_of_folder(path));
     fail("{}: expected a file, found a folder", path.string());
   }
   if (status.type() != std::filesystem::file_type::regular) {

@@ -26,6 +26,7 @@
   FORMAT(numpy_format)               \
   FORMAT(mrc_format)                 \
   FORMAT(dicom_format)               \
+  FORMAT(zarr_format)                \
   FORMAT(tiff_format)                \
   FORMAT(png_format)                 \
   FORMAT(vtk_picture_format)         \
@@ -89,15 +90,18 @@ const InputFormat* find_format_by_name(const std::filesystem::path& path) {
   const std::string ending = file_extension(path);
   const auto formats = input_formats();
   std::error_code unknown;
-  if (std::filesystem::is_directory(path, unknown))
-    return &*std::ranges::find(formats, true, &InputFormat::of_folders);
-  const auto found = std::find_if(formats.begin(), formats.end(),
-                                  [&](const InputFormat& format) { return format.has_ending(ending); });
+  const bool is_folder = std::filesystem::is_directory(path, unknown);
+  const auto found = std::find_if(formats.begin(), formats.end(), [&](const InputFormat& format) {
+    if (is_folder) return format.is_folder != nullptr && format.is_folder(path);
+    return format.has_ending(ending);
+  });
   return found == formats.end() ? nullptr : &*found;
 }
 
 const InputFormat* find_input_format(const std::filesystem::path& path) {
   if (const InputFormat* format = find_format_by_name(path)) return format;
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) return nullptr;
   std::array<char, 1024> bytes{};
   const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
   const std::string_view beginning(bytes.data(), size);

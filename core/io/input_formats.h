@@ -64,7 +64,8 @@ struct InputFormat {
   bool several_arrays = false;
   bool several_times = false;
   bool may_be_cells = false;  ///< whether a grid's ending may be that of cells too (is_mesh_by_header)
-  bool of_folders = false;    ///< whether a folder of files may stand for one of the format
+  /// Whether a folder stands for a file of the format; null if none does.
+  bool (*is_folder)(const std::filesystem::path& path) = nullptr;
 
   [[nodiscard]] bool gives_grids() const { return read_header != nullptr || read_grid != nullptr; }
   [[nodiscard]] bool gives_volumes() const { return read_header != nullptr || find_volume != nullptr; }

@@ -15,18 +15,23 @@
 #include "core/io/reader_program.h"
 #include "core/io/sent_grids.h"
 #include "core/io/volume_import.h"
+#include "core/io/zarr_reader.h"
 
 namespace adamas::io {
 
-GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series) {
+GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series,
+                              std::optional<std::uint64_t> time) {
   const InputFormat* format = find_input_format(path);
-  return format != nullptr && format->of_folders ? read_dicom(path, series) : read_grid_with_vtk(path);
+  if (format != nullptr && format->name == kDicom) return read_dicom(path, series);
+  if (format != nullptr && format->name == kZarr) return read_zarr(path, time);
+  return read_grid_with_vtk(path);
 }
 
 void send_grid(const ReaderRequest& request, ByteSink& sink) {
   const std::filesystem::path path = request.paths.front();
-  sink.put(request.reader == LibraryReader::kHdf5Grid ? read_hdf5_grid(path)
-                                                      : read_grid_in_process(path, request.array));
+  sink.put(request.reader == LibraryReader::kHdf5Grid
+               ? read_hdf5_grid(path)
+               : read_grid_in_process(path, request.array, request.time));
 }
 
 namespace {
@@ -106,10 +111,9 @@ void send(const GridArray& array, StoredType type, ImportSink& sink) {
 void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
   const std::string& name = request.name;
   const std::filesystem::path path = request.paths.front();
-  const GridFile file = read_grid_in_process(path, request.array);
+  const GridFile file = read_grid_in_process(path, request.array, request.time);
   // Of a folder of DICOM, the name is that of a series.
-  const GridArray& array =
-      chosen_array(name, file, std::filesystem::is_directory(path) ? std::string() : request.array);
+  const GridArray& array = chosen_array(name, file, is_dicom_folder(path) ? std::string() : request.array);
   ImportedVolume volume;
   set_places(name, file, volume);
   if (file.aslant) set_directions(*file.aslant, volume);

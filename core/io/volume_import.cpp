@@ -127,6 +127,7 @@ VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions&
                          Progress& progress) {
   ReaderRequest request = request_of(LibraryReader::kGridVolume, path);
   request.array = options.array;
+  request.time = options.time;
   if (file_extension(path) == ".vtk") check_legacy_vtk(path);
   return import_volume(request, options, progress);
 }

@@ -121,6 +121,23 @@ def check(program, zarr, type_name, size, steps, first=0, level=0, more=()):
     return len(scale["datasets"])
 
 
+def check_reading(program, zarr):
+    """Stores what zarr writes with each of its compressors, and compares the samples."""
+    import numcodecs
+    import numpy
+
+    values = (numpy.arange(9 * 21 * 34, dtype="<u2") * 7).reshape(9, 21, 34)
+    for codec in (numcodecs.Blosc(), numcodecs.Zstd(), numcodecs.GZip(), numcodecs.Zlib(), None):
+        name = f"in_{codec.codec_id if codec else 'raw'}"
+        group = zarr.open_group(os.path.join(program.folder, name + ".zarr"), mode="w")
+        group.create_dataset("0", data=values, chunks=(4, 8, 16), compressor=codec)
+        group.attrs["multiscales"] = [{"version": "0.4", "axes": [{"name": each} for each in "zyx"],
+                                       "datasets": [{"path": "0", "coordinateTransformations": [
+                                           {"type": "scale", "scale": [2, 1, 0.5]}]}]}]
+        program("store", name + ".zarr", "-o", name + ".adm")
+        assert program.raw(name + ".adm", 0, 0, ()) == values.tobytes(), name
+
+
 def main():
     try:
         import zarr
@@ -136,6 +153,8 @@ def main():
         assert check(program, zarr, "uint8", (140, 20, 20), 9, more=("--region", "10,70,4,12,9,40"), first=7) == 2
         # A single plane with an odd number has samples of one level only.
         assert check(program, zarr, "uint8", (20, 20, 140), 1, more=("--region", "3,4,4,12,5,283")) == 3
+        if zarr is not None:
+            check_reading(program, zarr)
     if zarr is None:
         print("skipped: zarr (python3-zarr) is not installed; the chunks were read without it")
         sys.exit(SKIPPED)

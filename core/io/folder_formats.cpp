@@ -1,4 +1,4 @@
-// What is known of DICOM without its library.
+// What is known of DICOM and of OME-Zarr without their libraries.
 
 #include <array>
 #include <fstream>
@@ -7,6 +7,7 @@
 #include "core/io/dicom_reader.h"
 #include "core/io/input_formats.h"
 #include "core/io/volume_import.h"
+#include "core/io/zarr_reader.h"
 
 namespace adamas::io {
 
@@ -27,7 +28,7 @@ bool is_dicom_folder(const std::filesystem::path& path) {
 }
 
 InputFormat dicom_format() {
-  return {.name = "DICOM",
+  return {.name = kDicom,
           .endings = ".dcm",
           .more_endings = ".dicom .ima",
           .shown_by =
@@ -35,7 +36,25 @@ InputFormat dicom_format() {
           .read_grid = read_grid_by_library,
           .find_volume = import_grid,
           .several_arrays = true,
-          .of_folders = true};
+          .is_folder = is_dicom_folder};
+}
+
+bool is_zarr_folder(const std::filesystem::path& path) {
+  std::error_code code;
+  for (const char* file : {".zattrs", ".zarray", ".zgroup", "zarr.json"}) {
+    if (std::filesystem::exists(path / file, code)) return true;
+  }
+  return false;
+}
+
+InputFormat zarr_format() {
+  return {.name = kZarr,
+          .endings = ".zarr",
+          .read_grid = read_grid_by_library,
+          .find_volume = import_grid,
+          .several_arrays = true,
+          .several_times = true,
+          .is_folder = is_zarr_folder};
 }
 
 }  // namespace adamas::io
