@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 #include "core/io/mesh_builder.h"
 
 namespace adamas::io {
@@ -26,12 +27,6 @@ Index3 index_of(Key key) {
   constexpr Key kMask = kMostPlaces - 1;
   return {static_cast<std::int64_t>(key & kMask), static_cast<std::int64_t>((key >> 21) & kMask),
           static_cast<std::int64_t>(key >> 42)};
-}
-
-void sort_unique(std::vector<Key>& keys) {
-  std::ranges::sort(keys);
-  const auto rest = std::ranges::unique(keys);
-  keys.erase(rest.begin(), rest.end());
 }
 
 /// Calls `use` with each index of a box of cells.

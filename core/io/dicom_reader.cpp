@@ -436,7 +436,8 @@ class SliceReader {
   void add_labels(GridFile& file, std::size_t plane, std::size_t count) {
     std::vector<std::int32_t> values(count, 0);
     std::size_t shared = 0;
-    for (const auto& [number, label] : labels_) {
+    for (const auto& each : labels_) {
+      const std::int64_t number = each.first;
       for (const Slice& slice : slices_) {
         if (slice.frame.segment != number) continue;
         std::int32_t* to = values.data() + place_of(slice) * plane;
