@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/base/error.h"
+#include "core/io/hdf5_handle.h"
 
 namespace adamas::io {
 
@@ -66,19 +67,36 @@ void add_array(hid_t file, const NamedArray& array) {
 
 }  // namespace
 
-Hdf5Image::Hdf5Image()
-    : access_(H5Pcreate(H5P_FILE_ACCESS), H5Pclose),
-      file_(H5Pset_fapl_core(access_.id(), kGrowth, false) < 0
-                ? -1
-                : H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access_.id()),
-            H5Fclose) {
-  if (!file_.good()) broken("HDF5 could not begin a file");
-}
+struct Hdf5Image::File {
+  File()
+      : access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose),
+        file(H5Pset_fapl_core(access.id(), kGrowth, false) < 0
+                 ? -1
+                 : H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),
+             H5Fclose) {
+    if (!file.good()) broken("HDF5 could not begin a file");
+  }
 
-void Hdf5Image::add(const NamedArray& array) { add_array(file_.id(), array); }
+  [[nodiscard]] hid_t id() const { return file.id(); }
+
+  /// Opens a group, which is made if there is none.
+  [[nodiscard]] Hdf5Handle open_group(const std::string& name) const {
+    const bool exists = H5Lexists(id(), name.c_str(), H5P_DEFAULT) > 0;
+    return {exists ? H5Gopen2(id(), name.c_str(), H5P_DEFAULT)
+                   : H5Gcreate2(id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+            H5Gclose};
+  }
+
+  Hdf5Handle access, file;
+};
+
+Hdf5Image::Hdf5Image() : file_(std::make_unique<File>()) {}
+Hdf5Image::~Hdf5Image() = default;
+
+void Hdf5Image::add(const NamedArray& array) { add_array(file_->id(), array); }
 
 void Hdf5Image::add(const std::string& name, std::span<const std::int64_t> numbers) {
-  add_data(file_.id(), name, H5T_STD_I64LE, numbers.size(), 1, numbers.data());
+  add_data(file_->id(), name, H5T_STD_I64LE, numbers.size(), 1, numbers.data());
 }
 
 void Hdf5Image::add_texts(const std::string& name, const std::vector<std::string>& texts) {
@@ -92,22 +110,15 @@ void Hdf5Image::add_texts(const std::string& name, const std::vector<std::string
   const hsize_t count = pointers.size();
   const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
   const Hdf5Handle set(
-      H5Dcreate2(file_.id(), name.c_str(), type.id(), space.id(), links.id(), layout.id(), H5P_DEFAULT),
+      H5Dcreate2(file_->id(), name.c_str(), type.id(), space.id(), links.id(), layout.id(), H5P_DEFAULT),
       H5Dclose);
   if (!set.good() ||
       (count > 0 && H5Dwrite(set.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0))
     broken(fmt::format("the texts '{}' could not be written", name));
 }
 
-Hdf5Handle Hdf5Image::open_group(const std::string& name) const {
-  const bool exists = H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT) > 0;
-  return {exists ? H5Gopen2(file_.id(), name.c_str(), H5P_DEFAULT)
-                 : H5Gcreate2(file_.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-          H5Gclose};
-}
-
 void Hdf5Image::add_attribute(const std::string& group, const char* name, const std::string& text) {
-  const Hdf5Handle owner = open_group(group), space(H5Screate(H5S_SCALAR), H5Sclose),
+  const Hdf5Handle owner = file_->open_group(group), space(H5Screate(H5S_SCALAR), H5Sclose),
                    type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1));
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
@@ -120,7 +131,7 @@ void Hdf5Image::add_attribute(const std::string& group, const char* name, const 
 void Hdf5Image::add_attribute(const std::string& group, const char* name,
                               std::span<const std::int64_t> numbers) {
   const hsize_t count = numbers.size();
-  const Hdf5Handle owner = open_group(group), space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Hdf5Handle owner = file_->open_group(group), space(H5Screate_simple(1, &count, nullptr), H5Sclose);
   const Hdf5Handle attribute(
       H5Acreate2(owner.id(), name, H5T_STD_I64LE, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   if (!attribute.good() || H5Awrite(attribute.id(), H5T_NATIVE_INT64, numbers.data()) < 0)
@@ -128,11 +139,11 @@ void Hdf5Image::add_attribute(const std::string& group, const char* name,
 }
 
 std::string Hdf5Image::bytes() {
-  H5Fflush(file_.id(), H5F_SCOPE_GLOBAL);
-  const ssize_t size = H5Fget_file_image(file_.id(), nullptr, 0);
+  H5Fflush(file_->id(), H5F_SCOPE_GLOBAL);
+  const ssize_t size = H5Fget_file_image(file_->id(), nullptr, 0);
   if (size <= 0) broken("HDF5 could not end a file");
   std::string result(static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file_.id(), result.data(), result.size()) != size)
+  if (H5Fget_file_image(file_->id(), result.data(), result.size()) != size)
     broken("HDF5 could not end a file");
   return result;
 }

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/data/unstructured_mesh.h"
-#include "core/io/hdf5_handle.h"
 
 namespace adamas::io {
 
@@ -14,6 +14,9 @@ namespace adamas::io {
 class Hdf5Image {
  public:
   Hdf5Image();
+  ~Hdf5Image();
+  Hdf5Image(const Hdf5Image&) = delete;
+  Hdf5Image& operator=(const Hdf5Image&) = delete;
 
   /// Adds an array as a data set; '/' in its name makes groups.
   void add(const NamedArray& array);
@@ -27,9 +30,8 @@ class Hdf5Image {
   [[nodiscard]] std::string bytes();
 
  private:
-  [[nodiscard]] Hdf5Handle open_group(const std::string& name) const;
-
-  Hdf5Handle access_, file_;
+  struct File;
+  std::unique_ptr<File> file_;
 };
 
 }  // namespace adamas::io

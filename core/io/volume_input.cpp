@@ -106,7 +106,7 @@ bool has_one_array(const std::string& path) {
   const InputFormat* format = find_format_by_name(path);
   if (format == nullptr || !format->gives_volumes()) return false;
   // A data set of HDF5 is always a volume, and so is a NIfTI, whatever its header says.
-  if (!format->gives_grids() || format->several_times) return true;
+  if (!format->gives_grids() || (format->several_times && format->is_folder == nullptr)) return true;
   if (format->several_arrays || format->read_header == nullptr) return false;
   return format->read_header(path).arrays.front().source.components == 1;
 }

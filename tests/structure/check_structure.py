@@ -49,7 +49,7 @@ OWNED = {
     r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h|expat\.h": ["core/io", "tests"],
     r"epoxy/.*|GL/.*|GLFW/.*|EGL/.*|imgui.*": ["viewer", "tests"],
     r"CLI/.*": ["cli", "tests"],
-    r"nlohmann/.*": ["workflow", "viewer", "cli", "tests"],
+    r"nlohmann/.*": ["core/io", "workflow", "viewer", "cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
 # Headers that take seconds to compile, with the only files of the program that may include them.

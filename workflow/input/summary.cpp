@@ -101,7 +101,9 @@ void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
 bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
   const InputFormat* format = find_format_by_name(path);
   if (format != nullptr && format->gives_volumes() && !format->gives_grids()) return true;
-  if (grid_wanted || format == nullptr || !format->several_times) return false;
+  // A folder may have several channels, which are the arrays of a grid.
+  if (grid_wanted || format == nullptr || !format->several_times || format->is_folder != nullptr)
+    return false;
   // Pictures of high dynamic range have the extension .hdr, as NIfTI's headers do.
   if (read_beginning(path).starts_with("#?")) return false;
   // A file of colours or vectors is not a volume. HDF5 has no such header; each of its data sets is a volume.
