@@ -142,6 +142,9 @@ InputKind kind_by_format(const std::filesystem::path& path) {
 const InputFormat& find_volume_format(const std::filesystem::path& path) {
   const InputFormat* format = find_input_format(path);
   if (format != nullptr && format->gives_volumes()) return *format;
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    fail("{}: expected a file, found a folder", path.string());
   fail("{}: expected a volume ({}) or the size and type of bare samples (--dimensions, --type), found '{}'",
        path.string(), list_volume_endings("or"), file_extension(path));
 }
