@@ -170,7 +170,7 @@ class Sweep {
     for (std::uint32_t layer = 0; layer < between_; ++layer) add_cells(layer);
     for (GridArray& array : file_.arrays) {
       array.centering == Centering::kCells
-          ? std::visit([this](auto& values) { repeat(values); }, array.values)
+          ? std::visit([&](auto& values) { repeat(values); }, array.values)
           : std::visit([&](auto& values) { move_values(array.components, values); }, array.values);
     }
     repeat(file_.block_of_cell);
