@@ -25,9 +25,9 @@ void add_material_options(const Command& command, InputOptions& options, const s
                           const std::string& field, Command::Conversion take_field);
 /// Adds the options of how interfaces are reconstructed from labels and fractions.
 void add_reconstruction_options(const Command& command, bool& smooth_labels, FractionOptions& fractions);
-/// Adds the names of a network's labels.
 /// Moves --time from the options of volumes to those of cells, where a file has these.
 void share_time(const std::filesystem::path& path, InputOptions& input, VolumeInput& volume);
+/// Adds the names of labels.
 void add_region_names(const Command& command, InputOptions& options);
 /// Adds the options of given interfaces.
 void add_interface_options(const Command& command, InputOptions& options);

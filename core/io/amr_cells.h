@@ -35,9 +35,8 @@ struct AmrSources {
 
 /// Appends the cells of blocks that no finer ones cover, and their points, to an empty `file`: in the order
 /// of the blocks, and in theirs. Where finer cells touch a face or an edge, it is divided as theirs are, so
-/// that faces of neighbours are the same ones. Throws
-/// Error, which begins with `name`, if levels do not refine each other or finer cells cover a part of a cell
-/// only.
+/// that faces of neighbours are the same ones. Throws Error, which begins with `name`, if levels do not
+/// refine each other or finer cells cover a part of a cell only.
 AmrSources add_amr_cells(const std::string& name, const AmrBlocks& blocks, MeshFile& file);
 
 }  // namespace adamas::io

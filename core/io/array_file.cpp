@@ -19,8 +19,6 @@
 
 namespace adamas::io {
 
-namespace {}  // namespace
-
 void write_array_file(const std::filesystem::path& path, const ArrayFile& file) {
   Hdf5Image hdf5;
   for (const NamedArray& array : file.arrays) hdf5.add(array);

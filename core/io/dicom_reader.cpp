@@ -21,6 +21,7 @@
 #include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
 #include "core/io/material_arrays.h"
+#include "core/io/stored_type.h"
 
 namespace adamas::io {
 
@@ -86,9 +87,34 @@ std::vector<double> numbers_of(const gdcm::DataSet& set, const gdcm::Tag& tag) {
 /// The pixels of a file, of all frames.
 struct Pixels {
   std::vector<char> bytes;
-  gdcm::PixelFormat::ScalarType type = gdcm::PixelFormat::UNKNOWN;
-  std::size_t count = 0;
+  std::optional<StoredType> type;  ///< none: single bits
 };
+
+/// The type of pixels; none for single bits and for types that are no numbers of 8 to 64 bits.
+std::optional<StoredType> pixel_type(gdcm::PixelFormat::ScalarType type) {
+  switch (type) {
+    case gdcm::PixelFormat::UINT8:
+      return StoredType::kUint8;
+    case gdcm::PixelFormat::INT8:
+      return StoredType::kInt8;
+    case gdcm::PixelFormat::UINT12:
+    case gdcm::PixelFormat::UINT16:
+      return StoredType::kUint16;
+    case gdcm::PixelFormat::INT12:
+    case gdcm::PixelFormat::INT16:
+      return StoredType::kInt16;
+    case gdcm::PixelFormat::UINT32:
+      return StoredType::kUint32;
+    case gdcm::PixelFormat::INT32:
+      return StoredType::kInt32;
+    case gdcm::PixelFormat::FLOAT32:
+      return StoredType::kFloat32;
+    case gdcm::PixelFormat::FLOAT64:
+      return StoredType::kFloat64;
+    default:
+      return {};
+  }
+}
 
 /// What headers say of a picture: that of the file, and those of all frames and of each frame.
 struct Frame {
@@ -151,13 +177,13 @@ class SliceReader {
     if (const gdcm::DataSet* shared = first_item(header, kShared)) whole.take_groups(*shared);
     const auto pixels = std::make_shared<const Pixels>(pixels_of(path, image, header));
     const auto per_frame = items_of(header, kPerFrame);
+    const std::vector<double> offsets = offsets_of(path, header, frames, per_frame != nullptr);
     for (std::size_t f = 0; f < frames; ++f) {
       Slice slice{path, whole, {}, pixels, f * image.GetDimension(0) * image.GetDimension(1)};
       if (per_frame != nullptr && f < per_frame->GetNumberOfItems())
         slice.frame.take_groups(per_frame->GetItem(f + 1).GetNestedDataSet());
       take_kind(slice, {image.GetDimension(0), image.GetDimension(1)}, header);
-      slice.origin =
-          *slice.frame.position + offset_of(path, header, frames, f, per_frame != nullptr) * normal_;
+      slice.origin = *slice.frame.position + offsets[f] * normal_;
       slices_.push_back(std::move(slice));
     }
     if (is_segmentation_) take_segments(header);
@@ -213,25 +239,35 @@ class SliceReader {
     }
   }
 
-  /// How far a frame lies from the place that the file states, along the normal.
-  static double offset_of(const std::string& path, const gdcm::DataSet& header, std::size_t frames,
-                          std::size_t frame, bool has_places) {
-    if (frames < 2 || has_places) return 0;
-    if (const std::vector<double> offsets = numbers_of(header, kOffsets); offsets.size() == frames)
-      return offsets[frame] - offsets[0];
+  /// How far each frame lies from the place that the file states, along the normal.
+  static std::vector<double> offsets_of(const std::string& path, const gdcm::DataSet& header,
+                                        std::size_t frames, bool has_places) {
+    if (frames < 2 || has_places) return std::vector<double>(frames, 0.0);
+    std::vector<double> offsets = numbers_of(header, kOffsets);
+    if (offsets.size() == frames) {
+      const double first = offsets[0];
+      for (double& offset : offsets) offset -= first;
+      return offsets;
+    }
     const std::vector<double> step = numbers_of(header, kSliceSpacing);
-    if (step.size() == 1 && step[0] > 0) return step[0] * static_cast<double>(frame);
-    fail("{}: expected frames with their places in space, found none", path);
+    if (step.size() != 1 || !(step[0] > 0))
+      fail("{}: expected frames with their places in space, found none", path);
+    offsets.resize(frames);
+    for (std::size_t f = 0; f < frames; ++f) offsets[f] = step[0] * static_cast<double>(f);
+    return offsets;
   }
 
   /// Reads all pixels of a file.
   static Pixels pixels_of(const std::string& path, const gdcm::Image& image, const gdcm::DataSet& header) {
     constexpr std::size_t kGreatestExpansion = 2000;
     Pixels pixels;
-    pixels.type = image.GetPixelFormat().GetScalarType();
-    pixels.count = 1;
-    for (unsigned axis = 0; axis < image.GetNumberOfDimensions(); ++axis)
-      pixels.count *= image.GetDimension(axis);
+    const gdcm::PixelFormat::ScalarType type = image.GetPixelFormat().GetScalarType();
+    pixels.type = pixel_type(type);
+    if (!pixels.type && type != gdcm::PixelFormat::SINGLEBIT)
+      fail("{}: expected pixels that can be unpacked, found others", path);
+    std::size_t count = 1;
+    for (unsigned axis = 0; axis < image.GetNumberOfDimensions(); ++axis) count *= image.GetDimension(axis);
+    const std::size_t least = pixels.type ? count * stored_bytes(*pixels.type) : (count + 7) / 8;
     const std::size_t bytes = image.GetBufferLength();
     // GDCM takes pixels that a file lacks for zeros.
     const gdcm::ByteValue* raw =
@@ -240,52 +276,9 @@ class SliceReader {
       fail("{}: expected {} bytes of pixels, found {}", path, bytes,
            raw != nullptr ? std::to_string(raw->GetLength()) : "a file that cannot hold them");
     pixels.bytes.resize(bytes);
-    if (bytes == 0 || bytes < bytes_of(pixels.type, pixels.count) || !image.GetBuffer(pixels.bytes.data()))
+    if (bytes == 0 || bytes < least || !image.GetBuffer(pixels.bytes.data()))
       fail("{}: expected pixels that can be unpacked, found others", path);
     return pixels;
-  }
-
-  /// The bytes of so many pixels. Types that are no numbers have endless ones.
-  static std::size_t bytes_of(gdcm::PixelFormat::ScalarType type, std::size_t count) {
-    if (type == gdcm::PixelFormat::SINGLEBIT) return (count + 7) / 8;
-    std::size_t size = 0;
-    const bool known = visit(type, [&size]<class Stored>(Stored) { size = sizeof(Stored); });
-    return known ? count * size : std::numeric_limits<std::size_t>::max();
-  }
-
-  /// Calls `use` with a number of a type; returns whether there is such a type.
-  template <class Use>
-  static bool visit(gdcm::PixelFormat::ScalarType type, const Use& use) {
-    switch (type) {
-      case gdcm::PixelFormat::UINT8:
-        use(std::uint8_t{});
-        return true;
-      case gdcm::PixelFormat::INT8:
-        use(std::int8_t{});
-        return true;
-      case gdcm::PixelFormat::UINT12:
-      case gdcm::PixelFormat::UINT16:
-        use(std::uint16_t{});
-        return true;
-      case gdcm::PixelFormat::INT12:
-      case gdcm::PixelFormat::INT16:
-        use(std::int16_t{});
-        return true;
-      case gdcm::PixelFormat::UINT32:
-        use(std::uint32_t{});
-        return true;
-      case gdcm::PixelFormat::INT32:
-        use(std::int32_t{});
-        return true;
-      case gdcm::PixelFormat::FLOAT32:
-        use(float{});
-        return true;
-      case gdcm::PixelFormat::FLOAT64:
-        use(double{});
-        return true;
-      default:
-        return false;
-    }
   }
 
   /// Calls `use` with the number and the scaled value of each pixel of a slice.
@@ -293,14 +286,14 @@ class SliceReader {
   void for_each_pixel(const Slice& slice, const Use& use) const {
     const std::size_t count = size_[0] * size_[1];
     const char* bytes = slice.pixels->bytes.data();
-    if (slice.pixels->type == gdcm::PixelFormat::SINGLEBIT) {
+    if (!slice.pixels->type) {
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t at = slice.first + i;
         use(i, static_cast<double>((static_cast<unsigned char>(bytes[at / 8]) >> (at % 8)) & 1));
       }
       return;
     }
-    visit(slice.pixels->type, [&]<class Stored>(Stored stored) {
+    visit_stored_type(*slice.pixels->type, [&]<class Stored>(Stored stored) {
       for (std::size_t i = 0; i < count; ++i) {
         std::memcpy(&stored, bytes + (slice.first + i) * sizeof(Stored), sizeof(Stored));
         use(i, slice.frame.slope * static_cast<double>(stored) + slice.frame.intercept);

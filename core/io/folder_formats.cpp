@@ -11,12 +11,23 @@
 
 namespace adamas::io {
 
+namespace {
+
+/// The bytes of a file of DICOM up to its mark, and behind it.
+constexpr std::size_t kDicomHead = 132;
+
+bool begins_as_dicom(std::string_view bytes) {
+  return bytes.size() >= kDicomHead && bytes.substr(kDicomHead - 4, 4) == "DICM";
+}
+
+}  // namespace
+
 bool is_dicom_file(const std::filesystem::path& path) {
   // Other files of a folder may be empty, unreadable or gone.
-  std::array<char, 132> bytes{};
+  std::array<char, kDicomHead> bytes{};
   std::ifstream stream(path, std::ios::binary);
   stream.read(bytes.data(), bytes.size());
-  return stream.good() && std::string_view(bytes.data() + 128, 4) == "DICM";
+  return stream.good() && begins_as_dicom({bytes.data(), bytes.size()});
 }
 
 bool is_dicom_folder(const std::filesystem::path& path) {
@@ -31,8 +42,7 @@ InputFormat dicom_format() {
   return {.name = kDicom,
           .endings = ".dcm",
           .more_endings = ".dicom .ima",
-          .shown_by =
-              [](std::string_view bytes) { return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM"; },
+          .shown_by = begins_as_dicom,
           .read_grid = read_grid_by_library,
           .find_volume = import_grid,
           .several_arrays = true,

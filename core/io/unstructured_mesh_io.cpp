@@ -228,12 +228,6 @@ void add_all_arrays(const std::string& name, UnstructuredMesh& mesh, vtkDataSet&
   add_arrays(name, mesh.field_arrays, static_cast<std::size_t>(-1), *target.GetFieldData());
 }
 
-int cell_type(CellKind kind, std::size_t corners) {
-  if (kind == CellKind::kTetrahedra) return VTK_TETRA;
-  if (kind == CellKind::kLines) return corners == 2 ? VTK_LINE : VTK_POLY_LINE;
-  return corners == 3 ? VTK_TRIANGLE : VTK_POLYGON;
-}
-
 void check_cells(const std::string& name, const UnstructuredMesh& mesh) {
   bool good =
       !mesh.offsets.empty() && mesh.offsets.front() == 0 && mesh.offsets.back() == mesh.connectivity.size();
@@ -249,8 +243,7 @@ void write_vtu(const std::filesystem::path& path, UnstructuredMesh& mesh) {
   const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   const auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    types->InsertNextValue(
-        static_cast<unsigned char>(cell_type(mesh.kind, mesh.offsets[c + 1] - mesh.offsets[c])));
+    types->InsertNextValue(vtk_cell_type(mesh.kind, mesh.offsets[c + 1] - mesh.offsets[c]));
   }
   add_all_arrays(path.string(), mesh, *grid);
   grid->SetPoints(take_points(mesh));

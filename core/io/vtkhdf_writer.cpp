@@ -1,7 +1,9 @@
 #include "core/io/vtkhdf_writer.h"
 
-#include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/io/hdf5_image.h"
 #include "core/io/output_stream.h"
@@ -11,12 +13,6 @@ namespace adamas::io {
 namespace {
 
 constexpr std::uint8_t kTetrahedron = 10, kTriangle = 5, kPolygon = 7, kLine = 3, kPolyLine = 4;
-
-std::uint8_t type_of(CellKind kind, std::size_t corners) {
-  if (kind == CellKind::kTetrahedra) return kTetrahedron;
-  if (kind == CellKind::kLines) return corners == 2 ? kLine : kPolyLine;
-  return corners == 3 ? kTriangle : kPolygon;
-}
 
 /// The name of an array as that of a data set, in which '/' would make a group.
 std::string data_set_name(std::string name) {
@@ -38,6 +34,12 @@ void add_arrays(const std::string& group, const std::vector<NamedArray>& arrays,
 
 }  // namespace
 
+std::uint8_t vtk_cell_type(CellKind kind, std::size_t corners) {
+  if (kind == CellKind::kTetrahedra) return kTetrahedron;
+  if (kind == CellKind::kLines) return corners == 2 ? kLine : kPolyLine;
+  return corners == 3 ? kTriangle : kPolygon;
+}
+
 void write_vtkhdf(const std::filesystem::path& path, const UnstructuredMesh& mesh) {
   const std::string root = "VTKHDF";
   Hdf5Image file;
@@ -49,17 +51,16 @@ void write_vtkhdf(const std::filesystem::path& path, const UnstructuredMesh& mes
   count("NumberOfPoints", mesh.points.size());
   count("NumberOfCells", mesh.cell_count());
   count("NumberOfConnectivityIds", mesh.connectivity.size());
-  NamedArray points{root + "/Points", 3, std::vector<double>()};
-  for (const Vec3& p : mesh.points)
-    std::get<std::vector<double>>(points.values)
-        .insert(std::get<std::vector<double>>(points.values).end(), {p.x, p.y, p.z});
-  file.add(points);
+  std::vector<double> coordinates;
+  coordinates.reserve(3 * mesh.points.size());
+  for (const Vec3& p : mesh.points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+  file.add({root + "/Points", 3, std::move(coordinates)});
   file.add(root + "/Connectivity",
            std::vector<std::int64_t>(mesh.connectivity.begin(), mesh.connectivity.end()));
   file.add(root + "/Offsets", std::vector<std::int64_t>(mesh.offsets.begin(), mesh.offsets.end()));
   std::vector<std::uint8_t> types;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c)
-    types.push_back(type_of(mesh.kind, mesh.offsets[c + 1] - mesh.offsets[c]));
+    types.push_back(vtk_cell_type(mesh.kind, mesh.offsets[c + 1] - mesh.offsets[c]));
   file.add({root + "/Types", 1, std::move(types)});
   add_arrays(root + "/PointData", mesh.point_arrays, file);
   add_arrays(root + "/CellData", mesh.cell_arrays, file);
