@@ -16,7 +16,7 @@ namespace {
 /// such as where the input's interfaces have an open border and the approximation closes the gap.
 constexpr double kFinestForInput = 1e-3;
 constexpr double kFinestForApproximation = 0.25;
-constexpr double kFinestForJunctions = 0.0625;
+constexpr double kFinestForShownJunctions = 0.0625;
 /// Points are equal if they are this close, relative to the domain's diagonal.
 constexpr double kRoundOff = 1e-14;
 /// The number of leaves per task where what they show is put into buffers.
@@ -171,9 +171,9 @@ std::vector<TetrahedronId> ShownInterfaces::failing_leaves() const {
   std::vector<TetrahedronId> result = leaves_with_far_input();
   for (const std::uint32_t t : comparison_.far_shown())
     state_.add_leaf_at(extracted_.mesh.centroid(t), kFinestForApproximation * target, result);
-  for (const auto& points : comparison_.far_junctions()) {
-    for (const Vec3& p : points) state_.add_leaf_at(p, kFinestForJunctions * target, result);
-  }
+  const auto& [input, shown] = comparison_.far_junctions();
+  for (const Vec3& p : input) state_.add_leaf_at(p, kFinestForInput * target, result);
+  for (const Vec3& p : shown) state_.add_leaf_at(p, kFinestForShownJunctions * target, result);
   return result;
 }
 

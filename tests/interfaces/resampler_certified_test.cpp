@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -161,6 +163,59 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
   EXPECT_LE(ratios[ratios.size() / 2], 1.1);
   std::printf("reported / measured interface error: median %.3f, worst %.3f of %zu\n",
               ratios[ratios.size() / 2], ratios.back(), ratios.size());
+}
+
+constexpr MaterialId kBelow(0), kSpeck(1), kAbove(2);
+
+void add_quad(InterfaceMesh& mesh, const std::array<Vec3, 4>& corners, MaterialId front, MaterialId back) {
+  const auto first = static_cast<std::uint32_t>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), corners.begin(), corners.end());
+  mesh.triangles.push_back({{first, first + 1, first + 2}, front, back});
+  mesh.triangles.push_back({{first, first + 2, first + 3}, front, back});
+}
+
+/// Adds the sides of a box of the material of specks from `low` to `high`, and its bottom and top where these
+/// are not left open.
+void add_speck(InterfaceMesh& mesh, const Vec3& low, const Vec3& high, MaterialId outside, bool bottom = true,
+               bool top = true) {
+  const auto corner = [&](double x, double y, double z) {
+    return Vec3{x > 0 ? high.x : low.x, y > 0 ? high.y : low.y, z > 0 ? high.z : low.z};
+  };
+  const auto add = [&](const std::array<Vec3, 4>& corners) { add_quad(mesh, corners, outside, kSpeck); };
+  add({corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)});
+  add({corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1)});
+  add({corner(1, 1, 0), corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1)});
+  add({corner(0, 1, 0), corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1)});
+  if (bottom) add({corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0), corner(1, 0, 0)});
+  if (top) add({corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)});
+}
+
+/// The only junction lines are round a speck that is far smaller than the error, at a plane: cells are as small
+/// there as it takes to show them.
+TEST(CertifiedInterfaces, JunctionsRoundASpeckFarSmallerThanTheError) {
+  constexpr double kSize = 0.003;
+  InterfaceMesh mesh;
+  mesh.materials = IdVector<MaterialId, std::string>({"below", "speck", "above"});
+  const Vec3 center{0.137, -0.211, 0.053}, half{kSize, kSize, 0}, up{0, 0, kSize};
+  const std::array<Vec3, 4> ways{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 a = ways[i], b = ways[(i + 1) % 4], height{0, 0, center.z};
+    add_quad(mesh, {a + height, b + height, center + kSize * b, center + kSize * a}, kAbove, kBelow);
+  }
+  add_speck(mesh, center - half - up, center + half, kBelow, true, false);
+  add_speck(mesh, center - half, center + half + up, kAbove, false, true);
+  add_speck(mesh, {-0.3, -0.3, 0.2}, {0.3, 0.3, 0.5}, kAbove);
+  const ResamplingSource source = make_mesh_source(mesh, Box3{{-1, -1, -1}, {1, 1, 1}});
+  ResamplingOptions options;
+  options.interface_error = 0.5;
+  Resampler resampler(source, options);
+  resampler.refine();
+  const auto& certificate = resampler.certificate();
+  ASSERT_TRUE(certificate && certificate->junctions);
+  const double lines = sampled_line_distance(network_mesh(*source.network, source.materials, ""),
+                                             approximated_interfaces(resampler).mesh);
+  EXPECT_LE(certificate->junctions->upper, options.interface_error);
+  EXPECT_GE(certificate->junctions->upper, lines * (1 - 1e-9));
 }
 
 TEST(LongCertifiedInterfaces, FromMeshes) { expect_certified(true, {0.1}, 10000); }
