@@ -276,12 +276,13 @@ Figures print_store(const std::string& path, Session& session) {
   const VolumeGrid& grid = store.grid();
   const auto [nx, ny, nz] = grid.dimensions;
   Console& console = session.console;
-  const std::uint64_t before = grid.bytes() * store.steps();
+  const std::uint64_t before = facts.number_bytes;
   const StoredBytes& bytes = facts.bytes;
   const int lods = store.lods();
   const CodingText coding = coding_text(facts.coding);
   console.print("{}: stored {}\n", path, store.steps() > 1 ? "series of volumes" : "volume");
-  console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
+  console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, type_text(grid.type, store.number_type()));
+  if (!store.array().empty()) console.print("  array '{}'\n", store.array());
   if (grid.is_scaled())
     console.print("  values are {:.9g} times the samples plus {:.9g}\n", grid.slope, grid.intercept);
   print_places(grid, console);
@@ -295,6 +296,8 @@ Figures print_store(const std::string& path, Session& session) {
                   {"kind", "store"},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
+                  {"number_type", to_string(store.number_type())},
+                  {"array", store.array().empty() ? Figures() : Figures(store.array())},
                   {"slope", grid.slope},
                   {"intercept", grid.intercept},
                   {"steps", store.steps()},
@@ -308,6 +311,7 @@ Figures print_store(const std::string& path, Session& session) {
                   {"bytes_input", before},
                   {"bytes_data", bytes.samples},
                   {"bytes_errors", bytes.bounds},
+                  {"bytes_remainders", bytes.remainders},
                   {"bytes_gradients", bytes.gradients},
                   {"bytes_file", facts.file_bytes}};
   add_places(grid, figures);

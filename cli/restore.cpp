@@ -19,7 +19,7 @@ struct Options {
 
 void report(const Options& options, const RestoreReport& restored, Session& session) {
   const auto [nx, ny, nz] = restored.grid.dimensions;
-  const char* type = sample_name(restored.written);
+  const std::string type = to_string(restored.written);
   session.console.print("{} x {} x {} samples, {}{}, {}\n", nx, ny, nz, type,
                         restored.steps.size() > 1 ? ", " + counted(restored.steps.size(), "step") : "",
                         bytes_text(static_cast<double>(restored.bytes)));

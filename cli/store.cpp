@@ -25,7 +25,7 @@ void report(const StoreReport& stored, const std::string& output, Session& sessi
   const std::uint64_t added = stored.added_bytes(), steps_now = stored.steps_before + stored.steps;
   const bool is_added = stored.steps_before > 0;
   const double seconds = console.seconds();
-  console.print("{} x {} x {} samples, {}{}\n", nx, ny, nz, sample_name(grid.type),
+  console.print("{} x {} x {} samples, {}{}\n", nx, ny, nz, type_text(grid.type, stored.numbers),
                 stored.steps > 1 || is_added
                     ? fmt::format(", {}{}", counted(stored.steps, "step"), is_added ? " added" : "")
                     : "");
@@ -39,11 +39,13 @@ void report(const StoreReport& stored, const std::string& output, Session& sessi
                   {"steps", stored.steps},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
+                  {"number_type", to_string(stored.numbers)},
                   {"array", stored.array.empty() ? Figures() : Figures(stored.array)},
                   {"bytes_input", stored.input_bytes},
                   {"bytes_data", bytes.samples},
                   {"bytes_gradients", bytes.gradients},
                   {"bytes_errors", bytes.bounds},
+                  {"bytes_remainders", bytes.remainders},
                   {"bytes_added", added},
                   {"bytes_file", stored.stored.file_bytes},
                   {"steps_file", steps_now},

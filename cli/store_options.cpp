@@ -42,21 +42,28 @@ void add_page_counts(const PageReads& reads, Figures& figures) {
   figures["damaged_pages"] = reads.damaged;
 }
 
+std::string type_text(SampleType samples, StoredType numbers) {
+  const std::string name = to_string(numbers);
+  return name == sample_name(samples) ? name : fmt::format("{} (shown as {})", name, sample_name(samples));
+}
+
 void print_store_bytes(std::uint64_t uncompressed, const StoredBytes& bytes, std::uint64_t all_bytes,
                        Console& console, const std::string& all) {
   const auto text = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
   const auto ratio = [uncompressed](std::uint64_t n) {
     return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
   };
-  const std::uint64_t parts = bytes.samples + bytes.bounds + bytes.gradients;
+  const std::uint64_t parts = bytes.samples + bytes.bounds + bytes.gradients + bytes.remainders;
   const std::uint64_t others = all_bytes - std::min(parts, all_bytes);
-  console.table({{"", "bytes", "ratio"},
-                 {"uncompressed", text(uncompressed), ""},
-                 {"samples", text(bytes.samples), ratio(bytes.samples)},
-                 {"errors and ranges", text(bytes.bounds), ""},
-                 {"gradients", text(bytes.gradients), ""},
-                 {"directory and copies", text(others), ""},
-                 {all, text(all_bytes), ratio(all_bytes)}});
+  std::vector<std::vector<std::string>> table{{"", "bytes", "ratio"},
+                                              {"uncompressed", text(uncompressed), ""},
+                                              {"samples", text(bytes.samples), ratio(bytes.samples)}};
+  if (bytes.remainders > 0) table.push_back({"further digits", text(bytes.remainders), ""});
+  table.push_back({"errors and ranges", text(bytes.bounds), ""});
+  table.push_back({"gradients", text(bytes.gradients), ""});
+  table.push_back({"directory and copies", text(others), ""});
+  table.push_back({all, text(all_bytes), ratio(all_bytes)});
+  console.table(table);
 }
 
 }  // namespace adamas::cli

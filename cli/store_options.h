@@ -31,6 +31,10 @@ ErrorTarget parse_surface_error(const std::string& option, const std::string& te
 /// Adds the numbers of pages and bytes that were read to the figures of a run.
 void add_page_counts(const PageReads& reads, Figures& figures);
 
+/// "float32", or "float64 (shown as float32)" where samples are of another type than the numbers that they
+/// are read from.
+std::string type_text(SampleType samples, StoredType numbers);
+
 /// Prints a table of the parts of a store by bytes, or of the steps that were added to it. `all`: the name of
 /// the last row, which has `all_bytes`.
 void print_store_bytes(std::uint64_t uncompressed, const StoredBytes& bytes, std::uint64_t all_bytes,

@@ -1,8 +1,12 @@
 #include "timevarying/restore_steps.h"
 
 #include <algorithm>
+#include <cstring>
+#include <map>
+#include <optional>
 
 #include "core/base/sort_unique.h"
+#include "isosurface/storage/number_remainders.h"
 #include "timevarying/step_pages.h"
 
 namespace adamas::timevarying {
@@ -68,6 +72,75 @@ class StepRestorer {
   std::vector<SlabRestorer<Sample>> steps_;
 };
 
+/// Makes the numbers of a step of its samples, plane by plane.
+class NumberRestorer {
+ public:
+  NumberRestorer(StoreFile& file, std::uint32_t step, const RestoredPart& part)
+      : file_(file), step_(step), part_(part), type_(file.header().numbers.type), planes_(part.first.k) {}
+
+  /// Returns the numbers of the next plane. Throws DamagedPage where remainders are damaged.
+  std::span<const std::byte> next(std::span<const std::byte> samples) {
+    numbers_.resize(part_.grid.plane_samples() * stored_bytes(type_));
+    const std::uint64_t k = static_cast<std::uint64_t>(planes_++) << part_.lod;
+    if (has_remainders(type_)) {
+      load(k);
+      values_.resize(part_.grid.plane_samples());
+      std::memcpy(values_.data(), samples.data(), samples.size());
+      add_remainders(type_, values_, of_plane_, numbers_);
+    } else {
+      nearest_numbers(type_, samples, numbers_);
+    }
+    return numbers_;
+  }
+  [[nodiscard]] bool at_end() const { return planes_ > part_.last.k; }
+  /// Returns whether remainders of the part are damaged.
+  bool damaged() {
+    try {
+      for (std::int32_t k = part_.first.k; has_remainders(type_) && k <= part_.last.k; ++k)
+        load(static_cast<std::uint64_t>(k) << part_.lod);
+      return false;
+    } catch (const DamagedPage&) {
+      return true;
+    }
+  }
+
+ private:
+  /// Finds the remainders of the samples of the part in plane k of LOD 0.
+  void load(std::uint64_t k) {
+    const VolumeGrid& volume = file_.header().grid;
+    const std::uint64_t planes = remainder_planes(volume), record = k / planes;
+    if (record_ != record) {
+      const std::uint64_t count = std::min(planes, volume.dimensions[2] - record * planes);
+      const auto bytes = file_.remainders(step_, record);
+      if (!bytes || !decode_remainders(type_, *bytes, count * volume.plane_samples(), remainders_))
+        throw DamagedPage(fmt::format("{}: the remainders of planes {} to {} are damaged{}", file_.name(),
+                                      record * planes, record * planes + count - 1,
+                                      file_.steps() > 1 ? fmt::format(" at step {}", step_) : ""));
+      record_ = record;
+    }
+    const std::size_t width = stored_bytes(type_);
+    of_plane_.clear();
+    for (std::int32_t j = part_.first.j; j <= part_.last.j; ++j) {
+      const std::uint64_t row = (k % planes) * volume.plane_samples() +
+                                (static_cast<std::uint64_t>(j) << part_.lod) * volume.dimensions[0];
+      for (std::int32_t i = part_.first.i; i <= part_.last.i; ++i) {
+        const std::uint64_t at = (row + (static_cast<std::uint64_t>(i) << part_.lod)) * width;
+        of_plane_.insert(of_plane_.end(), remainders_.begin() + static_cast<std::ptrdiff_t>(at),
+                         remainders_.begin() + static_cast<std::ptrdiff_t>(at + width));
+      }
+    }
+  }
+
+  StoreFile& file_;
+  std::uint32_t step_;
+  RestoredPart part_;
+  StoredType type_;
+  std::int32_t planes_;                  ///< the next plane of the part
+  std::optional<std::uint64_t> record_;  ///< the record that remainders_ are of
+  std::vector<std::byte> remainders_, of_plane_, numbers_;
+  std::vector<float> values_;
+};
+
 /// Calls fn(restorer) for one group of steps after another; each group is best restored together.
 template <class Fn>
 void for_each_group(StoreFile& file, const StepRange& steps, const RestoredPart& part, std::size_t memory,
@@ -109,6 +182,21 @@ PageReads restore_steps(StoreFile& file, const StepRange& steps, const RestoredP
   return counts;
 }
 
+PageReads restore_numbers(StoreFile& file, const StepRange& steps, const RestoredPart& part,
+                          std::size_t memory,
+                          const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+                          Progress& progress) {
+  if (file.header().numbers.type == stored_type(part.grid.type))
+    return restore_steps(file, steps, part, memory, sink, progress);
+  std::map<std::uint32_t, NumberRestorer> restorers;
+  const auto to_numbers = [&](std::uint32_t step, std::span<const std::byte> plane) {
+    NumberRestorer& restorer = restorers.try_emplace(step, file, step, part).first->second;
+    sink(step, restorer.next(plane));
+    if (restorer.at_end()) restorers.erase(step);
+  };
+  return restore_steps(file, steps, part, memory, to_numbers, progress);
+}
+
 std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
                                          std::size_t memory, Progress& progress) {
   std::vector<std::uint32_t> all;
@@ -116,6 +204,10 @@ std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps
     const std::vector<std::uint32_t> some = restorer.damaged(progress);
     all.insert(all.end(), some.begin(), some.end());
   });
+  for (std::uint32_t step = steps.first; step <= steps.last; ++step) {
+    if (NumberRestorer(file, step, part).damaged()) all.push_back(step);
+  }
+  sort_unique(all);
   return all;
 }
 

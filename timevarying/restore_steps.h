@@ -31,7 +31,15 @@ PageReads restore_steps(isosurface::StoreFile& file, const StepRange& steps,
                         const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
                         Progress& progress);
 
-/// Finds which of some steps cannot be restored, in ascending order, by decoding all of them.
+/// Restores the numbers that samples were read from in place of samples, as restore_steps() does. Throws
+/// DamagedPage also where remainders are damaged.
+PageReads restore_numbers(isosurface::StoreFile& file, const StepRange& steps,
+                          const isosurface::RestoredPart& part, std::size_t memory,
+                          const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+                          Progress& progress);
+
+/// Finds which of some steps cannot be restored, in ascending order, by decoding all of them
+/// and their remainders.
 std::vector<std::uint32_t> damaged_steps(isosurface::StoreFile& file, const StepRange& steps,
                                          const isosurface::RestoredPart& part, std::size_t memory,
                                          Progress& progress);

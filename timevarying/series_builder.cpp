@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/unnamed_file.h"
+#include "core/data/stored_type.h"
 #include "isosurface/storage/block_builder.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/storage/store_file_writer.h"
@@ -205,9 +206,14 @@ class SeriesBlockBuilder final : public BlockBuilder<Sample> {
   Surroundings<Word> around_;
 };
 
+StoredNumbers numbers_of(const SeriesSource& series) {
+  return {series.numbers.value_or(stored_type(series.grid.type)), series.array};
+}
+
 /// Adds all steps of a series, in blocks that end at multiples of `block_steps`.
 void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, const SeriesSource& series,
-                const StoreOptions& options, std::uint32_t first, StoreFigures& figures, Progress& progress) {
+                const StoredNumbers& numbers, const StoreOptions& options, std::uint32_t first,
+                StoreFigures& figures, Progress& progress) {
   const auto count = static_cast<std::uint32_t>(series.times.size());
   for (std::uint32_t begin = 0; begin < count;) {
     const std::uint32_t step = first + begin;
@@ -215,7 +221,9 @@ void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, cons
     const auto file = steps_before(step) > 0 ? std::make_unique<StoreFile>(path) : nullptr;
     const BlockSource source{step,
                              {series.times.begin() + begin, series.times.begin() + end},
-                             [&](std::uint32_t n) { return series.planes(begin + n); }};
+                             [&](std::uint32_t n) { return series.planes(begin + n); },
+                             numbers,
+                             series.number_planes};
     with_sample_type(series.grid.type, [&](auto sample) {
       const auto builder = std::make_unique<SeriesBlockBuilder<decltype(sample)>>(series.grid, options, step,
                                                                                   file.get(), progress);
@@ -225,13 +233,22 @@ void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, cons
   }
 }
 
+/// Throws Error where a store has numbers of another type, or both have names of arrays and these differ.
+void check_numbers(const StoredNumbers& wanted, const StoredNumbers& found, const std::string& name) {
+  if (wanted.type != found.type)
+    fail("{}: expected numbers of type {} as it has, found {}", name, to_string(wanted.type),
+         to_string(found.type));
+  if (!wanted.array.empty() && !found.array.empty() && wanted.array != found.array)
+    fail("{}: expected the array '{}' as it has, found '{}'", name, wanted.array, found.array);
+}
+
 }  // namespace
 
 StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
                           const SeriesSource& series, const StoreOptions& options, Progress& progress) {
   StoreFigures figures;
   StoreFileWriter writer(path, shown, series.grid, options.group_pages);
-  add_blocks(writer, path, series, options, 0, figures, progress);
+  add_blocks(writer, path, series, numbers_of(series), options, 0, figures, progress);
   return figures;
 }
 
@@ -241,13 +258,15 @@ StoreFigures append_series(const StoreLock& store, const SeriesSource& series, S
   const std::filesystem::path& path = store.path();
   const StoreFile file(path);
   if (series.grid != file.header().grid) fail("{}: expected steps on its grid, found another", file.name());
+  const StoredNumbers& numbers = file.header().numbers;
+  check_numbers(numbers, numbers_of(series), file.name());
   const double last = file.times().back();
   if (series.times.empty() || series.times.front() <= last)
     fail("{}: expected steps after the time {}, found earlier ones", file.name(), last);
   if (options.coding != SampleCoding::kPlain) options.coding = coding_of_bytes(file.header().coding);
   options.gradients = file.header().gradients;
   StoreFileWriter writer(path, file);
-  add_blocks(writer, path, series, options, file.steps(), figures, progress);
+  add_blocks(writer, path, series, numbers, options, file.steps(), figures, progress);
   return figures;
 }
 

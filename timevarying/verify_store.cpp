@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/lattice/diamond.h"
+#include "isosurface/storage/number_remainders.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
@@ -19,6 +22,41 @@ using namespace isosurface;
 namespace {
 
 constexpr std::size_t kMostProblems = 20;
+
+void add_problem(const std::string& text, std::uint32_t step, VerifiedStore& result) {
+  auto& problems = result.problems;
+  auto known = std::find_if(problems.begin(), problems.end(),
+                            [&](const PageProblem& each) { return each.what == text; });
+  if (known == problems.end()) {
+    if (problems.size() >= kMostProblems) {
+      ++result.further_problems;
+      return;
+    }
+    known = problems.insert(known, {text, {}});
+  }
+  known->steps.push_back(step);
+}
+
+void add_bad(const std::string& text, std::uint32_t step, VerifiedStore& result) {
+  ++result.bad_pages;
+  if (result.bad_steps.empty() || result.bad_steps.back() != step) result.bad_steps.push_back(step);
+  add_problem(text, step, result);
+}
+
+/// Checks the records of remainders of a step; damaged ones count as damaged pages.
+void check_remainders(StoreFile& file, std::uint32_t step, VerifiedStore& result) {
+  const StoreHeader& header = file.header();
+  if (!has_remainders(header.numbers.type)) return;
+  std::vector<std::byte> remainders;
+  const std::uint64_t planes = remainder_planes(header.grid);
+  for (std::uint64_t record = 0; record < remainder_records(header.grid); ++record) {
+    const std::uint64_t first = record * planes, end = std::min(first + planes, header.grid.dimensions[2]);
+    const auto bytes = file.remainders(step, record);
+    if (!bytes || !decode_remainders(header.numbers.type, *bytes, (end - first) * header.grid.plane_samples(),
+                                     remainders))
+      add_bad(fmt::format("the remainders of planes {} to {} are damaged", first, end - 1), step, result);
+  }
+}
 
 template <class Sample>
 class Verifier {
@@ -60,13 +98,14 @@ class Verifier {
     if (payload.state == PageState::kCopied ||
         (payload.state == PageState::kWhole && entry && !file_.copy_is_whole(*entry))) {
       ++result_.bad_copies;
-      problem(id, "one of its two copies is damaged");
+      add_problem(text(id, "one of its two copies is damaged"), step_, result_);
     }
     if (!pages_.copy(id, page_)) {
-      problem_of_bad(id,
-                     payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one");
+      add_bad(
+          text(id, payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one"),
+          step_, result_);
     } else if (const char* what = fault(id, page_, entry, has_gradients)) {
-      problem_of_bad(id, what);
+      add_bad(text(id, what), step_, result_);
     }
   }
 
@@ -129,25 +168,8 @@ class Verifier {
     return page.low[c] > page.high[c] || (page.low[p] <= page.low[c] && page.high[p] >= page.high[c]);
   }
 
-  void problem_of_bad(const PageId& id, const char* what) {
-    ++result_.bad_pages;
-    if (result_.bad_steps.empty() || result_.bad_steps.back() != step_) result_.bad_steps.push_back(step_);
-    problem(id, what);
-  }
-
-  void problem(const PageId& id, const char* what) {
-    const std::string text = fmt::format("{} {}", page_name(id), what);
-    auto& problems = result_.problems;
-    auto known = std::find_if(problems.begin(), problems.end(),
-                              [&](const PageProblem& each) { return each.what == text; });
-    if (known == problems.end()) {
-      if (problems.size() >= kMostProblems) {
-        ++result_.further_problems;
-        return;
-      }
-      known = problems.insert(known, {text, {}});
-    }
-    known->steps.push_back(step_);
+  static std::string text(const PageId& id, const char* what) {
+    return fmt::format("{} {}", page_name(id), what);
   }
 
   StoreFile& file_;
@@ -167,6 +189,7 @@ VerifiedStore verify_store(StoreFile& file, std::size_t memory, Progress& progre
     with_sample_type(file.header().grid.type, [&](auto sample) {
       Verifier<decltype(sample)>(file, step, memory, result).run(progress);
     });
+    check_remainders(file, step, result);
   }
   return result;
 }

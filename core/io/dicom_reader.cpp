@@ -18,10 +18,10 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/data/stored_type.h"
 #include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
 #include "core/io/material_arrays.h"
-#include "core/io/stored_type.h"
 
 namespace adamas::io {
 

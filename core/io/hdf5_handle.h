@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/io/stored_type.h"
+#include "core/data/stored_type.h"
 
 namespace adamas::io {
 

@@ -10,13 +10,13 @@
 
 #include "adamas/geometry.h"
 #include "core/base/error.h"
+#include "core/data/stored_type.h"
 #include "core/io/grid_file.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/hdf5_handle.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
-#include "core/io/stored_type.h"
 #include "core/io/volume_import.h"
 #include "core/io/volume_stack.h"
 

@@ -127,7 +127,7 @@ GridAxes qform(const NiftiHeader& header) {
 }
 
 template <class V>
-std::string header_bytes(const VolumeGrid& grid) {
+std::string header_bytes(const VolumeGrid& grid, StoredType type) {
   // Four zero bytes say that no extension follows.
   std::string bytes(V::kBytes + 4, '\0');
   const auto put = [&bytes]<class T>(std::size_t at, T value) { std::memcpy(&bytes[at], &value, sizeof(T)); };
@@ -141,9 +141,9 @@ std::string header_bytes(const VolumeGrid& grid) {
     put(V::kPixdim + i * sizeof(Real), static_cast<Real>(step));
   }
   const auto* datatype = std::find_if(std::begin(kDatatypes), std::end(kDatatypes),
-                                      [&](const Datatype& d) { return d.type == stored_type(grid.type); });
+                                      [&](const Datatype& d) { return d.type == type; });
   put(V::kDatatype, static_cast<std::int16_t>(datatype->code));
-  put(V::kBits, static_cast<std::int16_t>(8 * sample_bytes(grid.type)));
+  put(V::kBits, static_cast<std::int16_t>(8 * stored_bytes(type)));
   put(V::kOffset, static_cast<typename V::Offset>(bytes.size()));
   put(V::kSlope, static_cast<Real>(grid.slope));
   put(V::kIntercept, static_cast<Real>(grid.intercept));
@@ -219,7 +219,7 @@ std::string read_nifti_header(const std::filesystem::path& path) {
   return header;
 }
 
-std::string nifti_file_header(const VolumeGrid& grid) {
+std::string nifti_file_header(const VolumeGrid& grid, StoredType type) {
   constexpr std::uint64_t kMost = 32767;
   bool large =
       std::any_of(grid.dimensions.begin(), grid.dimensions.end(), [](std::uint64_t n) { return n > kMost; });
@@ -233,7 +233,7 @@ std::string nifti_file_header(const VolumeGrid& grid) {
   }
   for (const double factor : {grid.slope, grid.intercept})
     large = large || static_cast<double>(static_cast<float>(factor)) != factor;
-  return large ? header_bytes<Version2>(grid) : header_bytes<Version1>(grid);
+  return large ? header_bytes<Version2>(grid, type) : header_bytes<Version1>(grid, type);
 }
 
 namespace {

@@ -10,8 +10,8 @@
 
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
+#include "core/data/stored_type.h"
 #include "core/io/image_header.h"
-#include "core/io/stored_type.h"
 
 namespace adamas::io {
 
@@ -60,6 +60,6 @@ ImageHeader nifti_image(std::string_view text, const std::filesystem::path& path
 /// The bytes before the samples in a file that holds both: NIfTI-1, or NIfTI-2 if there are more than 32767
 /// samples along an axis. Positions are in RAS if the space of the grid is known; `grid.space` has to be RAS
 /// or one that cannot be converted to it.
-std::string nifti_file_header(const VolumeGrid& grid);
+std::string nifti_file_header(const VolumeGrid& grid, StoredType type);
 
 }  // namespace adamas::io

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/data/stored_type.h"
 #include "core/io/image_header.h"
-#include "core/io/stored_type.h"
 
 namespace adamas::io {
 

@@ -8,9 +8,9 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/data/stored_type.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
-#include "core/io/stored_type.h"
 
 namespace adamas::io {
 

@@ -10,9 +10,9 @@
 
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
+#include "core/data/stored_type.h"
 #include "core/io/file_handle.h"
 #include "core/io/grid_axes.h"
-#include "core/io/stored_type.h"
 
 namespace adamas::io {
 

@@ -15,9 +15,9 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/data/anatomical_space.h"
+#include "core/data/stored_type.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
-#include "core/io/stored_type.h"
 #include "core/io/xml_file.h"
 
 namespace adamas::io {
@@ -67,19 +67,21 @@ std::string anatomical_orientation(const VolumeGrid& grid) {
 }
 
 /// The header of a NRRD file. `data_name`: the file of the samples, empty if they follow.
-std::string nrrd_header_text(const VolumeGrid& grid, const std::string& data_name) {
+std::string nrrd_header_text(const VolumeGrid& grid, StoredType type, const std::string& data_name) {
+  const std::string name = type == StoredType::kFloat32   ? "float"
+                           : type == StoredType::kFloat64 ? "double"
+                                                          : stored_name(type);
   const std::string space = nrrd_space(grid.space);
   return fmt::format(
       "NRRD0004\ntype: {}\ndimension: 3\n{}sizes: {}\nspace directions: ({}) ({}) ({})\n"
       "kinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: ({})\n{}\n",
-      grid.type == SampleType::kFloat32 ? "float" : sample_name(grid.type),
-      space.empty() ? "space dimension: 3\n" : "space: " + space + "\n", sizes(grid),
+      name, space.empty() ? "space dimension: 3\n" : "space: " + space + "\n", sizes(grid),
       numbers(step(grid, 0), ","), numbers(step(grid, 1), ","), numbers(step(grid, 2), ","),
       numbers(grid.origin, ","), data_name.empty() ? "" : "data file: " + data_name + "\n");
 }
 
 /// The header of a MetaImage file. `data_name`: the file of the samples, empty if they follow.
-std::string meta_image_header_text(VolumeGrid grid, const std::string& data_name) {
+std::string meta_image_header_text(VolumeGrid grid, StoredType type, const std::string& data_name) {
   std::string orientation;
   if (to_space("LPS", grid)) orientation = "AnatomicalOrientation = " + anatomical_orientation(grid) + "\n";
   const auto& [i, j, k] = grid.directions;
@@ -88,13 +90,12 @@ std::string meta_image_header_text(VolumeGrid grid, const std::string& data_name
       "CompressedData = False\nTransformMatrix = {} {} {}\nOffset = {}\n{}ElementSpacing = {}\n"
       "DimSize = {}\nElementType = {}\nElementDataFile = {}\n",
       numbers(i), numbers(j), numbers(k), numbers(grid.origin), orientation, numbers(grid.spacing),
-      sizes(grid), stored_name(stored_type(grid.type), TypeNames::kMetaImage),
-      data_name.empty() ? "LOCAL" : data_name);
+      sizes(grid), stored_name(type, TypeNames::kMetaImage), data_name.empty() ? "LOCAL" : data_name);
 }
 
 /// The text before the samples of a .vti; vti_count() has to precede each array. Throws Error with `name` if
 /// there are too many samples along an axis.
-std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
+std::string vti_header_text(const std::string& name, const VolumeGrid& grid, StoredType type,
                             const std::vector<VtiArray>& arrays) {
   const auto& n = grid.dimensions;
   // VTK counts points along an axis in 32 bits.
@@ -116,10 +117,10 @@ std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
         array.slope == 1 && array.intercept == 0
             ? ""
             : fmt::format(" slope=\"{}\" intercept=\"{}\"", array.slope, array.intercept);
-    declared += fmt::format(
-        "        <DataArray type=\"{}\" Name=\"{}\"{} format=\"appended\" offset=\"{}\"/>\n",
-        stored_name(stored_type(grid.type), TypeNames::kVtk), xml_attribute(array.name), scale, offset);
-    offset += sizeof(std::uint64_t) + grid.bytes();
+    declared +=
+        fmt::format("        <DataArray type=\"{}\" Name=\"{}\"{} format=\"appended\" offset=\"{}\"/>\n",
+                    stored_name(type, TypeNames::kVtk), xml_attribute(array.name), scale, offset);
+    offset += sizeof(std::uint64_t) + grid.samples() * stored_bytes(type);
   }
   return fmt::format(
       "<?xml version=\"1.0\"?>\n"
@@ -134,14 +135,14 @@ std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
 }
 
 /// The number that precedes an array of a .vti: the size of the array in bytes.
-std::string vti_count(const VolumeGrid& grid) {
-  const std::uint64_t bytes = grid.bytes();
+std::string vti_count(const VolumeGrid& grid, StoredType type) {
+  const std::uint64_t bytes = grid.samples() * stored_bytes(type);
   return {reinterpret_cast<const char*>(&bytes), sizeof(bytes)};
 }
 
-std::string nifti_header_bytes(VolumeGrid grid) {
+std::string nifti_header_bytes(VolumeGrid grid, StoredType type) {
   to_space("RAS", grid);
-  return nifti_file_header(grid);
+  return nifti_file_header(grid, type);
 }
 
 bool is_nifti(std::string_view extension) { return extension == ".nii" || extension == ".nii.gz"; }
@@ -198,25 +199,28 @@ bool writes_values(const std::filesystem::path& path, const VolumeGrid& grid) {
 
 VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                            const VolumeWriterOptions& options)
-    : grid_(of_planes), writes_values_(writes_values(path, of_planes)) {
+    : grid_(of_planes),
+      numbers_(options.numbers.value_or(stored_type(of_planes.type))),
+      writes_values_(writes_values(path, of_planes)) {
   const std::string name = path.string(), extension = file_extension(path);
   grid_.check(name);
   VolumeGrid grid = grid_;
-  if (writes_values_) grid.type = SampleType::kFloat32, grid.slope = 1, grid.intercept = 0;
+  if (writes_values_) grid.slope = 1, grid.intercept = 0;
+  const StoredType type = writes_values_ ? StoredType::kFloat32 : numbers_;
   const bool apart = !volume_data_file(path).empty();
   const auto data_file = options.data_file.empty() ? volume_data_file(path) : options.data_file;
   const auto data_name = options.data_name.empty() ? data_file.filename().string() : options.data_name;
   if (apart) check_data_name(name, data_name);
   std::string text;
   if (extension == ".vti") {
-    text = vti_header_text(name, grid, {{options.array}}) + vti_count(grid);
+    text = vti_header_text(name, grid, type, {{options.array}}) + vti_count(grid, type);
     end_ = kVtiEnd;
   } else if (extension == ".nrrd" || extension == ".nhdr") {
-    text = nrrd_header_text(grid, apart ? data_name : "");
+    text = nrrd_header_text(grid, type, apart ? data_name : "");
   } else if (extension == ".mha" || extension == ".mhd") {
-    text = meta_image_header_text(grid, apart ? data_name : "");
+    text = meta_image_header_text(grid, type, apart ? data_name : "");
   } else if (is_nifti(extension)) {
-    text = nifti_header_bytes(grid);
+    text = nifti_header_bytes(grid, type);
   } else if (extension != ".raw") {
     fail("{}: expected .vti, .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz or .raw for a volume, found '{}'", name,
          extension);
@@ -228,20 +232,21 @@ VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& 
     gzip_->write(text);
     return;
   }
-  check_room(apart ? data_file : path, grid.bytes());
+  check_room(apart ? data_file : path, grid.samples() * stored_bytes(type));
   header_->write(text);
 }
 
-void VolumeWriter::write_plane(std::span<const std::byte> samples) {
-  ADAMAS_ASSERT(samples.size() == grid_.plane_bytes() && planes_ < grid_.dimensions[2]);
+void VolumeWriter::write_plane(std::span<const std::byte> numbers) {
+  ADAMAS_ASSERT(numbers.size() == grid_.plane_samples() * stored_bytes(numbers_) &&
+                planes_ < grid_.dimensions[2]);
   if (writes_values_) {
-    find_values(grid_, samples, values_);
-    samples = std::as_bytes(std::span(values_));
+    find_values(grid_, numbers_, numbers, values_);
+    numbers = std::as_bytes(std::span(values_));
   }
   if (gzip_) {
-    gzip_->write(samples.data(), samples.size());
+    gzip_->write(numbers.data(), numbers.size());
   } else {
-    (data_ ? data_ : header_)->write(samples.data(), samples.size());
+    (data_ ? data_ : header_)->write(numbers.data(), numbers.size());
   }
   ++planes_;
 }
@@ -261,12 +266,12 @@ void write_point_arrays(const std::filesystem::path& path, const VolumeGrid& gri
   grid.check(path.string());
   std::vector<VtiArray> declared;
   for (const PointArray& array : arrays) declared.push_back({array.name, array.slope, array.intercept});
-  const std::string text = vti_header_text(path.string(), grid, declared);
+  const std::string text = vti_header_text(path.string(), grid, stored_type(grid.type), declared);
   OutputStream stream(path);
   check_room(path, grid.bytes() * arrays.size());
   stream.write(text);
   for (const PointArray& array : arrays) {
-    stream.write(vti_count(grid));
+    stream.write(vti_count(grid, stored_type(grid.type)));
     for (std::uint64_t k = 0; k < grid.dimensions[2]; ++k) {
       const std::span<const std::byte> samples = array.plane(k);
       ADAMAS_ASSERT(samples.size() == grid.plane_bytes());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct VolumeWriterOptions {
   std::string array = "values";     ///< the name of the samples in a .vti
   std::filesystem::path data_file;  ///< the file of the samples; empty: volume_data_file(path)
   std::string data_name;            ///< the name of that file in the header; empty: its own name
+  /// The type of the numbers that planes have; none: that of the grid's samples.
+  std::optional<StoredType> numbers{};
 };
 
 /// A line on what a file does not keep of a grid's axes, origin and space; empty if it keeps all. The files
@@ -46,14 +49,15 @@ class VolumeWriter {
   VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                const VolumeWriterOptions& options = {});
 
-  /// Takes the next plane, grid.plane_bytes() bytes in the machine's byte order. Throws Error if it cannot be
+  /// Takes the numbers of the next plane, in the machine's byte order. Throws Error if it cannot be
   /// written.
-  void write_plane(std::span<const std::byte> samples);
+  void write_plane(std::span<const std::byte> numbers);
   /// Ends the files, after the last plane. Throws Error if they are not complete.
   void finish();
 
  private:
-  VolumeGrid grid_;  ///< grid of the planes that are passed in
+  VolumeGrid grid_;     ///< grid of the planes that are passed in
+  StoredType numbers_;  ///< the type of their numbers
   bool writes_values_ = false;
   std::vector<float> values_;  ///< the values of a plane
   std::uint64_t planes_ = 0;

@@ -25,18 +25,9 @@ static_assert(std::endian::native == std::endian::little, "samples are written a
 
 constexpr int kZlibLevel = 6;
 
-const char* zarr_type(SampleType type) {
-  switch (type) {
-    case SampleType::kUint8:
-      return "|u1";
-    case SampleType::kUint16:
-      return "<u2";
-    case SampleType::kInt16:
-      return "<i2";
-    case SampleType::kFloat32:
-      return "<f4";
-  }
-  return "";
+const char* zarr_type(StoredType type) {
+  constexpr const char* kNames[] = {"|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<i8", "<u8", "<f4", "<f8"};
+  return kNames[static_cast<std::size_t>(type)];
 }
 
 void make_folder(const std::filesystem::path& path) {
@@ -68,8 +59,9 @@ std::vector<std::byte> compressed(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-ZarrArray::ZarrArray(std::filesystem::path folder, const VolumeGrid& grid, std::optional<std::uint64_t> steps)
-    : folder_(std::move(folder)), grid_(grid), steps_(steps) {
+ZarrArray::ZarrArray(std::filesystem::path folder, const VolumeGrid& grid, StoredType type,
+                     std::optional<std::uint64_t> steps)
+    : folder_(std::move(folder)), grid_(grid), type_(type), steps_(steps) {
   for (std::size_t axis = 0; axis < 3; ++axis) chunk_[axis] = std::min(kSide, grid.dimensions[axis]);
   make_folder(folder_);
   write_header();
@@ -91,17 +83,17 @@ void ZarrArray::write_header() const {
 }}
 )",
       steps_ ? fmt::format("{}, ", *steps_) : "", nz, ny, nx, steps_ ? "1, " : "", chunk_[2], chunk_[1],
-      chunk_[0], zarr_type(grid_.type), kZlibLevel);
+      chunk_[0], zarr_type(type_), kZlibLevel);
   write_file(folder_ / ".zarray", std::as_bytes(std::span(text)));
 }
 
 void ZarrArray::Step::write_plane(std::span<const std::byte> samples) {
   const VolumeGrid& grid = array_.grid_;
-  ADAMAS_ASSERT(samples.size() == grid.plane_bytes() && planes_ < grid.dimensions[2]);
+  ADAMAS_ASSERT(samples.size() == array_.plane_bytes() && planes_ < grid.dimensions[2]);
   slab_.insert(slab_.end(), samples.begin(), samples.end());
   ++planes_;
   if (planes_ % array_.chunk_[2] != 0 && planes_ < grid.dimensions[2]) return;
-  array_.write_slab(step_, planes_ - slab_.size() / grid.plane_bytes(), slab_);
+  array_.write_slab(step_, planes_ - slab_.size() / array_.plane_bytes(), slab_);
   slab_.clear();
 }
 
@@ -125,12 +117,12 @@ void ZarrArray::write_slab(std::uint64_t step, std::uint64_t first, std::span<co
 
 std::vector<std::byte> ZarrArray::chunk(std::uint64_t x, std::uint64_t y,
                                         std::span<const std::byte> planes) const {
-  const std::size_t width = sample_bytes(grid_.type);
+  const std::size_t width = stored_bytes(type_);
   const std::uint64_t row = grid_.dimensions[0] * width, rows = grid_.dimensions[1];
   const std::uint64_t x0 = x * chunk_[0], y0 = y * chunk_[1];
   const std::uint64_t bytes = std::min(chunk_[0], grid_.dimensions[0] - x0) * width;
   std::vector<std::byte> result(chunk_[0] * chunk_[1] * chunk_[2] * width);
-  for (std::uint64_t k = 0; k < planes.size() / grid_.plane_bytes(); ++k) {
+  for (std::uint64_t k = 0; k < planes.size() / plane_bytes(); ++k) {
     for (std::uint64_t j = y0; j < std::min(y0 + chunk_[1], rows); ++j) {
       const std::uint64_t to = (k * chunk_[1] + j - y0) * chunk_[0] * width;
       std::memcpy(result.data() + to, planes.data() + (k * rows + j) * row + x0 * width, bytes);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adamas/volume.h"
+#include "core/data/stored_type.h"
 
 namespace adamas::io {
 
@@ -22,13 +23,15 @@ class ZarrArray {
 
   /// Makes the folder, in an existing one, and writes `.zarray`. `steps`: the number of steps of a series.
   /// Throws Error if they cannot be written.
-  ZarrArray(std::filesystem::path folder, const VolumeGrid& grid, std::optional<std::uint64_t> steps);
+  /// `type`: that of the numbers of planes.
+  ZarrArray(std::filesystem::path folder, const VolumeGrid& grid, StoredType type,
+            std::optional<std::uint64_t> steps);
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
   /// The size of the files written so far, in bytes.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   /// The size of the planes that are kept until their chunks are complete, in bytes.
-  [[nodiscard]] std::uint64_t slab_bytes() const { return chunk_[2] * grid_.plane_bytes(); }
+  [[nodiscard]] std::uint64_t slab_bytes() const { return chunk_[2] * plane_bytes(); }
 
   /// Writes one step, plane by plane in ascending order. Several steps may be written at the same time.
   class Step {
@@ -46,6 +49,7 @@ class ZarrArray {
   };
 
  private:
+  [[nodiscard]] std::uint64_t plane_bytes() const { return grid_.plane_samples() * stored_bytes(type_); }
   void write_header() const;
   /// Writes the chunks of some planes, the first of which begins a chunk.
   void write_slab(std::uint64_t step, std::uint64_t first, std::span<const std::byte> planes);
@@ -54,6 +58,7 @@ class ZarrArray {
 
   std::filesystem::path folder_;
   VolumeGrid grid_;
+  StoredType type_;
   std::optional<std::uint64_t> steps_;
   std::array<std::uint64_t, 3> chunk_{};  ///< number of samples along x, y and z
   std::uint64_t bytes_ = 0;

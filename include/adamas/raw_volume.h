@@ -4,31 +4,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "adamas/export.h"
 #include "adamas/geometry.h"
+#include "adamas/volume.h"
 
 namespace adamas ADAMAS_API {
-
-/// The type of samples in a file.
-enum class StoredType : std::uint8_t {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kInt64,
-  kUint64,
-  kFloat32,
-  kFloat64
-};
-
-/// Returns the name of a type: "int8", "uint8", ..., "float32", "float64".
-std::string to_string(StoredType type);
-/// Returns the type of that name; none where there is no such type.
-std::optional<StoredType> parse_stored_type(std::string_view name);
 
 /// Describes the content of a file of samples without a header.
 struct RawVolume {

@@ -49,6 +49,7 @@ struct StoreReport {
   std::uint64_t bytes_before = 0;  ///< size of the file up to the end of these
   std::uint64_t input_bytes = 0;   ///< bytes of the samples in the input's files
   BuildReport stored{};
+  StoredType numbers = StoredType::kUint8;  ///< the type of the numbers that samples are read from
   std::string array;  ///< the name of the first step's array; empty where the file has none
   /// The number of samples that are no finite numbers, by the number of the step among those stored.
   std::map<std::uint32_t, std::uint64_t> infinite_samples;
@@ -84,7 +85,7 @@ struct RestoreRequest {
 /// The result of restore_files().
 struct RestoreReport {
   VolumeGrid grid;                          ///< the grid of each step, at the finest LOD
-  SampleType written = SampleType::kUint8;  ///< the type that samples or values were written with
+  StoredType written = StoredType::kUint8;  ///< the type that numbers or values were written with
   int lod = 0;                              ///< the finest LOD
   std::size_t lods = 1;                     ///< number of LODs that were written to a .zarr
   std::vector<std::uint32_t> steps;         ///< the steps that were written, ascending

@@ -3,8 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adamas/export.h"
@@ -30,6 +32,25 @@ constexpr std::size_t sample_bytes(SampleType type) {
 
 /// Returns the name of a type: "uint8", "uint16", "int16" or "float32".
 const char* sample_name(SampleType type);
+
+/// The type of numbers in a file, which samples are read from.
+enum class StoredType : std::uint8_t {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64
+};
+
+/// Returns the name of a type: "int8", "uint8", ..., "float32", "float64".
+std::string to_string(StoredType type);
+/// Returns the type of that name; none where there is no such type.
+std::optional<StoredType> parse_stored_type(std::string_view name);
 
 /// Describes a volume without its samples: a regular grid of samples, i running fastest.
 struct VolumeGrid {

@@ -21,23 +21,22 @@ namespace adamas ADAMAS_API {
 /// as OutputSet::declare does; messages call the option -o.
 void declare_volume_output(const std::filesystem::path& output, OutputSet& outputs);
 
-/// Receives the samples of the next plane with equal k: VolumeGrid::plane_bytes() bytes in the machine's byte
-/// order.
+/// Receives the numbers of the next plane with equal k, in the machine's byte order.
 using PlaneSink = std::function<void(std::span<const std::byte>)>;
 
 /// Notes the properties of a grid that the format of the output, one file or a list .pvd of files .vti, does
 /// not keep: the places of samples and their scale.
 void note_lost(const std::filesystem::path& output, const VolumeGrid& grid, Progress& progress);
 
-/// Returns the type of the samples in a file: kFloat32 where the format does not keep their scale, so that
-/// values are written in place of samples.
-SampleType written_type(const std::filesystem::path& output, const VolumeGrid& grid);
+/// Returns the type of the numbers in a file, `numbers`, or kFloat32 where the format does not keep their
+/// scale, so that values are written in their place.
+StoredType written_type(const std::filesystem::path& output, const VolumeGrid& grid, StoredType numbers);
 
-/// Writes the declared files. `array`: the name of the samples in a .vti. `make` is called once, and gives
-/// the planes to its sink in ascending order. Returns the number of bytes written. Throws Error where the
-/// files cannot be written in full.
+/// Writes the declared files. `numbers`: the type of the numbers of planes. `array`: their name in a .vti.
+/// `make` is called once, and gives the planes to its sink in ascending order. Returns the number of bytes
+/// written. Throws Error where the files cannot be written in full.
 std::size_t write_volume_output(const std::filesystem::path& output, const VolumeGrid& grid,
-                                const std::string& array, const std::function<void(const PlaneSink&)>& make,
-                                OutputSet& outputs);
+                                StoredType numbers, const std::string& array,
+                                const std::function<void(const PlaneSink&)>& make, OutputSet& outputs);
 
 }  // namespace adamas

@@ -67,6 +67,14 @@ struct SeriesSource {
   /// asked for in ascending order.
   std::function<std::function<void(std::uint64_t k, std::span<std::byte> samples)>(std::uint32_t step)>
       planes;
+  /// The type of the numbers that samples are read from, where it is none that samples have: int8, which
+  /// become int16, and whole numbers of four and eight bytes and float64, which become float32. Restoring
+  /// returns these numbers, bit for bit.
+  std::optional<StoredType> numbers{};
+  /// Fills these numbers of plane k of the step whose planes were asked for last, in the machine's byte
+  /// order.
+  std::function<void(std::uint64_t k, std::span<std::byte> numbers)> number_planes{};
+  std::string array{};  ///< the name of the array; empty where it has none
 };
 
 /// Numbers of bytes of a store by the parts of pages, without second copies of coarse pages.
@@ -74,6 +82,7 @@ struct StoredBytes {
   std::uint64_t samples = 0;
   std::uint64_t bounds = 0;  ///< errors and ranges
   std::uint64_t gradients = 0;
+  std::uint64_t remainders = 0;  ///< what numbers are more than their samples (SeriesSource::numbers)
 };
 
 /// The result of building a store or of adding steps to it.
@@ -184,6 +193,7 @@ struct StoreFacts {
   std::uint64_t pages = 0;             ///< pages of each step
   std::size_t blocks = 0;              ///< blocks of steps that were stored together
   std::uint32_t group_pages = 1;       ///< BuildOptions::group_pages
+  std::uint64_t number_bytes = 0;      ///< uncompressed bytes of the numbers of all steps
   StoredBytes bytes;                   ///< bytes of all steps
   std::uint64_t file_bytes = 0;        ///< size of the file
   std::uint64_t unfinished_bytes = 0;  ///< bytes at the end of the file of steps that were never finished
@@ -218,8 +228,9 @@ class VolumeStore {
   static BuildReport build(const std::filesystem::path& path, const SeriesSource& series,
                            const BuildOptions& options = {}, Progress& progress = SilentProgress::instance());
   /// Adds steps behind the last one of a store, which stays whole even if this fails. Stores that are open do
-  /// not see the steps. Throws Error where the steps are on another grid or not later, and where another
-  /// process adds steps; and Error (kUsage) for options that are not those of the store.
+  /// not see the steps. Throws Error where the steps are on another grid, have numbers of another type or an
+  /// array of another name, or are not later, and where another process adds steps; and Error (kUsage) for
+  /// options that are not those of the store.
   static BuildReport append(const std::filesystem::path& path, const SeriesSource& series,
                             const BuildOptions& options = {},
                             Progress& progress = SilentProgress::instance());
@@ -230,6 +241,10 @@ class VolumeStore {
 
   /// Returns dimensions, type of samples, spacing, origin, directions of the axes and the name of the space.
   [[nodiscard]] const VolumeGrid& grid() const;
+  /// Returns the type of the numbers that samples were read from: that of samples, or SeriesSource::numbers.
+  [[nodiscard]] StoredType number_type() const;
+  /// Returns the name of the array; empty where it had none.
+  [[nodiscard]] const std::string& array() const;
   /// Returns the number of steps: 1 for a single volume.
   [[nodiscard]] std::uint32_t steps() const;
   /// Returns the time of each step, ascending.
@@ -279,6 +294,10 @@ class VolumeStore {
   /// restored side by side. Throws Error as restore() does.
   PageReads restore_steps(const StepRange& steps, const VolumePart& part, const StepSink& sink,
                           Progress& progress = SilentProgress::instance());
+  /// Restores the numbers that samples were read from, bit for bit, in place of samples: planes of numbers of
+  /// number_type(). Throws Error as restore() does, also where remainders are damaged.
+  PageReads restore_numbers(const StepRange& steps, const VolumePart& part, const StepSink& sink,
+                            Progress& progress = SilentProgress::instance());
   /// Returns the steps among these that cannot be restored, in ascending order; all steps are decoded for
   /// that.
   std::vector<std::uint32_t> damaged_steps(const StepRange& steps, const VolumePart& part = {},

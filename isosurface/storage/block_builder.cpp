@@ -9,6 +9,7 @@
 #include "isosurface/compression/bounds/bounds_codec.h"
 #include "isosurface/compression/ranks/prevailing_sample.h"
 #include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/number_remainders.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {
@@ -124,6 +125,8 @@ BlockBuilder<Sample>::~BlockBuilder() = default;
 
 template <class Sample>
 void BlockBuilder<Sample>::build(StoreFileWriter& writer, const BlockSource& source, StoreFigures& figures) {
+  writer_ = &writer;
+  source_ = &source;
   first_step_ = source.first_step;
   step_count_ = source.times.size();
   step_memory_ = kMemory / step_count_;
@@ -134,6 +137,8 @@ void BlockBuilder<Sample>::build(StoreFileWriter& writer, const BlockSource& sou
   const Codecs codecs = survey();
   StoreHeader header;
   header.grid = volume_;
+  header.numbers = source.numbers;
+  header.bytes = bytes_;
   header.coding = coding_in_files(coding());
   header.gradients = options_.gradients;
   header.first_step = first_step_;
@@ -167,6 +172,28 @@ void BlockBuilder<Sample>::prepare_step(const PlaneSource& planes) {
         step.pages->put(id, page);
       },
       progress_);
+  if (has_remainders(source_->numbers.type)) write_remainders(planes);
+}
+
+template <class Sample>
+void BlockBuilder<Sample>::write_remainders(const PlaneSource& planes) {
+  const std::size_t width = stored_bytes(source_->numbers.type), samples = volume_.plane_samples();
+  const std::uint64_t per_record = remainder_planes(volume_);
+  std::vector<float> values;
+  std::vector<std::byte> numbers;
+  for (std::uint64_t k = 0; k < volume_.dimensions[2]; k += per_record) {
+    progress_.step("keeping digits", static_cast<double>(k) / static_cast<double>(volume_.dimensions[2]));
+    const std::size_t count = std::min(per_record, volume_.dimensions[2] - k);
+    values.resize(count * samples);
+    numbers.resize(count * samples * width);
+    for (std::size_t n = 0; n < count; ++n) {
+      planes(k + n, std::as_writable_bytes(std::span(values).subspan(n * samples, samples)));
+      source_->number_planes(k + n, std::span(numbers).subspan(n * samples * width, samples * width));
+    }
+    const std::vector<std::byte> record = encode_remainders(source_->numbers.type, numbers, values);
+    bytes_.remainders += record.size();
+    writer_->add_remainders(record);
+  }
 }
 
 template <class Sample>

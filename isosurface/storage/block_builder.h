@@ -67,6 +67,10 @@ struct BlockSource {
   std::uint32_t first_step = 0;  ///< the number of the first of them in the store
   std::vector<double> times;     ///< times of the steps, ascending
   std::function<PlaneSource(std::uint32_t n)> planes;
+  StoredNumbers numbers;
+  /// Where numbers have remainders, fills the numbers of a plane of the step whose planes were asked for
+  /// last.
+  PlaneSource number_planes;
 };
 
 /// Makes one block of a store: preprocesses its steps, chooses tables, compresses pages and writes them. The
@@ -97,6 +101,8 @@ class BlockBuilder {
   [[nodiscard]] virtual std::unique_ptr<BlockSurvey<Word>> sample_block_survey() const = 0;
 
   void prepare_step(const PlaneSource& planes);
+  /// Writes the remainders of the step that was prepared last.
+  void write_remainders(const PlaneSource& planes);
   /// Finds the gradients of the step that was prepared last.
   void find_gradients(const PlaneSource& planes);
   void put_gradients(std::size_t step, const PageId& id, const Page<std::uint16_t>& page);
@@ -131,6 +137,9 @@ class BlockBuilder {
   Codecs survey();
   void write(StoreFileWriter& writer, const Codecs& codecs, StoreHeader& header);
 
+  StoreFileWriter* writer_ = nullptr;
+  const BlockSource* source_ = nullptr;
+  StoreBytes bytes_;
   std::size_t step_memory_ = 0;  ///< bytes of scratch pages of each step that are kept in memory
   std::vector<Step> steps_;
   std::vector<std::uint64_t> numbers_;

@@ -13,6 +13,7 @@
 #include "core/base/assert.h"
 #include "core/base/checksum.h"
 #include "core/base/error.h"
+#include "isosurface/storage/number_remainders.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {
@@ -66,7 +67,7 @@ void StoreFile::read_blocks() {
     const StoreHeader& header = block.root.header;
     if (!blocks_.empty()) {
       const StoreHeader& next = blocks_.back().root.header;
-      if (header.grid != next.grid || header.gradients != next.gradients ||
+      if (header.grid != next.grid || header.numbers != next.numbers || header.gradients != next.gradients ||
           header.first_step + header.steps() != next.first_step || header.times.back() >= next.times.front())
         fail("{}: expected the steps before step {}, found others", name_, next.first_step);
     }
@@ -259,6 +260,20 @@ bool StoreFile::copy_is_whole(const PageEntry& entry) {
          crc32c(bytes_at(entry.copy, entry.size)) == entry.checksum;
 }
 
+std::optional<std::span<const std::byte>> StoreFile::remainders(std::uint32_t step, std::uint64_t record) {
+  const Block& block = block_of(step);
+  const RemainderTable& table = block.root.remainders;
+  const std::uint64_t last =
+      (step - block.root.header.first_step) * remainder_records(block.root.header.grid) + record;
+  ADAMAS_ASSERT(last < table.records.size());
+  std::uint64_t offset = table.offset;
+  for (std::uint64_t n = 0; n < last; ++n) offset += table.records[n].size;
+  const RemainderRecord& wanted = table.records[last];
+  const auto bytes = bytes_at(offset, wanted.size);
+  if (wanted.size > 0 && crc32c(bytes) != wanted.checksum) return {};
+  return bytes;
+}
+
 void StoreFile::check_directory() {
   std::uint64_t total = StorePrologue::kBytes;
   for (const Block& block : blocks_) {
@@ -273,6 +288,7 @@ void StoreFile::check_directory() {
     }
     const std::uint64_t wanted = grid_.page_count() * block.root.header.steps();
     if (entries != wanted) fail("{}: expected {} pages, found {}", name_, wanted, entries);
+    for (const RemainderRecord& record : block.root.remainders.records) total += record.size;
     total += block.root_bytes;
     if (block.root.header.first_step == 0) continue;
     total += kBlockMark.size();

@@ -82,8 +82,12 @@ class StoreFile {
   /// made later; null: one page. It has no effect on a file that is mapped.
   void set_read_plan(std::shared_ptr<const ReadPlan> plan) { plan_ = std::move(plan); }
 
-  /// Reads all bytes except those of pages, and throws Error at the first damage: in the directory's parts,
-  /// or bytes that belong to nothing.
+  /// Reads a record of remainders of a step, which has remainder_records(); none where it is damaged. The
+  /// bytes are valid until the next call.
+  std::optional<std::span<const std::byte>> remainders(std::uint32_t step, std::uint64_t record);
+
+  /// Reads all bytes except those of pages and remainders, and throws Error at the first damage: in the
+  /// directory's parts, or bytes that belong to nothing.
   void check_directory();
   /// Returns whether a page's second copy, if it has one, is whole.
   bool copy_is_whole(const PageEntry& entry);

@@ -46,8 +46,20 @@ void StoreFileWriter::write(std::span<const std::byte> bytes) {
   at_ += bytes.size();
 }
 
+void StoreFileWriter::begin_block() {
+  if (!std::exchange(has_begun_, true) && before_.size > 0) write(std::as_bytes(std::span(kBlockMark)));
+}
+
+void StoreFileWriter::add_remainders(std::span<const std::byte> record) {
+  ADAMAS_ASSERT(chunks_.empty());
+  begin_block();
+  if (remainders_.records.empty()) remainders_.offset = at_;
+  remainders_.records.push_back({record.size(), crc32c(record)});
+  write(record);
+}
+
 void StoreFileWriter::begin_chunk(std::uint64_t first) {
-  if (chunks_.empty() && before_.size > 0) write(std::as_bytes(std::span(kBlockMark)));
+  begin_block();
   DirectoryChunk chunk;
   chunk.first = first;
   chunk.pages = at_;
@@ -107,12 +119,13 @@ std::uint64_t StoreFileWriter::finish_block(const StoreHeader& header) {
     chunks_[n].checksum = crc32c(entry_bytes_[n]);
     write(entry_bytes_[n]);
   }
-  StoreRoot root{header, before_, std::move(chunks_)};
+  StoreRoot root{header, before_, std::move(chunks_), std::exchange(remainders_, {})};
   root.header.group_pages = group_pages_;
   const std::vector<std::byte> bytes = root.serialise();
   before_ = {at_, bytes.size()};
   write(bytes);
   write_prologue(before_);
+  has_begun_ = false;
   chunks_.clear();
   entry_bytes_.clear();
   copies_.clear();

@@ -23,6 +23,8 @@ class StoreFileWriter {
   /// Opens a store to add blocks behind its last one, in groups of the same size.
   StoreFileWriter(const std::filesystem::path& path, const StoreFile& store);
 
+  /// Adds a record of remainders of numbers. All records of a block are added before its pages, step by step.
+  void add_remainders(std::span<const std::byte> record);
   /// Adds a page at a step. All pages of a block that PageGrid::contains are added, in ascending order of
   /// number, then step.
   void add_page(std::uint64_t number, std::span<const std::byte> payload, const PageSummary& summary);
@@ -32,6 +34,8 @@ class StoreFileWriter {
 
  private:
   void write(std::span<const std::byte> bytes);
+  /// Marks the beginning of a block that is added to others.
+  void begin_block();
   /// Writes the pages of a group, step by step.
   void end_group();
   void begin_chunk(std::uint64_t first);
@@ -44,7 +48,9 @@ class StoreFileWriter {
   std::size_t word_bytes_;
   std::uint32_t group_pages_;
   std::uint64_t at_ = 0;
-  RootPlace before_;                          ///< the root of the last finished block
+  RootPlace before_;        ///< the root of the last finished block
+  bool has_begun_ = false;  ///< whether something of the block has been written
+  RemainderTable remainders_;
   std::vector<DirectoryChunk> chunks_;        ///< chunks of the block; the members below are of the block too
   std::vector<std::uint64_t> group_numbers_;  ///< numbers of the pages of the last group
   std::vector<std::vector<std::byte>> group_;        ///< bytes of these pages, of each page for all steps

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/data/anatomical_space.h"
 #include "isosurface/compression/byte_stream.h"
+#include "isosurface/storage/number_remainders.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
@@ -57,15 +58,32 @@ VolumeGrid read_grid(ByteReader& in, std::string_view name) {
   return grid;
 }
 
+StoredNumbers read_numbers(ByteReader& in, const VolumeGrid& grid, std::string_view name) {
+  StoredNumbers numbers;
+  const auto type = in.number<std::uint8_t>();
+  if (type > static_cast<std::uint8_t>(StoredType::kFloat64))
+    fail("{}: expected a type of numbers from 0 to 9, found {}", name, type);
+  numbers.type = static_cast<StoredType>(type);
+  if (sample_type_for(numbers.type) != grid.type)
+    fail("{}: expected a type of numbers that are {} as samples, found {}", name, sample_name(grid.type),
+         type);
+  const auto array = in.sized_bytes();
+  numbers.array.assign(reinterpret_cast<const char*>(array.data()), array.size());
+  return numbers;
+}
+
 void write_header(ByteWriter& out, const StoreHeader& header) {
   write_grid(out, header.grid);
+  out.number(static_cast<std::uint8_t>(header.numbers.type));
+  out.sized_bytes(std::as_bytes(std::span(header.numbers.array)));
   out.number(static_cast<std::uint8_t>(header.coding));
   const int group_bits = std::countr_zero(header.group_pages);
   out.number(static_cast<std::uint8_t>(static_cast<int>(header.gradients) | group_bits << kGroupShift));
   out.number(header.first_step);
   out.varint(header.times.size());
   for (const double time : header.times) out.number(time);
-  for (const std::uint64_t n : {header.bytes.samples, header.bytes.bounds, header.bytes.gradients})
+  for (const std::uint64_t n :
+       {header.bytes.samples, header.bytes.bounds, header.bytes.gradients, header.bytes.remainders})
     out.number(n);
   for (const auto* tables :
        {&header.sample_tables, &header.time_tables, &header.bounds_tables, &header.gradient_tables})
@@ -90,6 +108,7 @@ void read_times(ByteReader& in, StoreHeader& header, std::string_view name) {
 StoreHeader read_header(ByteReader& in, std::string_view name) {
   StoreHeader header;
   header.grid = read_grid(in, name);
+  header.numbers = read_numbers(in, header.grid, name);
   const auto choice = [&](const char* what, int most) {
     const auto value = in.number<std::uint8_t>();
     if (value > most) fail("{}: expected {} from 0 to {}, found {}", name, what, most, value);
@@ -105,7 +124,8 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
   header.group_pages = 1u << group_bits;
   header.first_step = in.number<std::uint32_t>();
   read_times(in, header, name);
-  for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.bounds, &header.bytes.gradients})
+  for (std::uint64_t* n :
+       {&header.bytes.samples, &header.bytes.bounds, &header.bytes.gradients, &header.bytes.remainders})
     *n = in.number<std::uint64_t>();
   for (auto* tables :
        {&header.sample_tables, &header.time_tables, &header.bounds_tables, &header.gradient_tables}) {
@@ -150,6 +170,34 @@ void check_chunks(const StoreRoot& root, const PageGrid& grid, std::uint64_t end
       fail("{}: expected a directory inside the file, found one beyond its end", name);
     before = &chunk;
   }
+}
+
+void write_remainders(ByteWriter& out, const RemainderTable& table) {
+  out.varint(table.offset);
+  for (const RemainderRecord& record : table.records) {
+    out.varint(record.size);
+    if (record.size > 0) out.number(record.checksum);
+  }
+}
+
+RemainderTable read_remainders(ByteReader& in, const StoreHeader& header, std::uint64_t end,
+                               std::string_view name) {
+  RemainderTable table;
+  if (!has_remainders(header.numbers.type)) return table;
+  table.offset = in.varint();
+  const std::uint64_t count = header.steps() * remainder_records(header.grid);
+  if (count > in.rest().size())
+    fail("{}: expected {} records of remainders, found room for fewer", name, count);
+  std::uint64_t left = end - std::min(end, table.offset);
+  for (std::uint64_t n = 0; n < count; ++n) {
+    RemainderRecord record;
+    record.size = in.varint();
+    if (record.size > left) fail("{}: expected remainders inside the file, found some beyond its end", name);
+    if (record.size > 0) record.checksum = in.number<std::uint32_t>();
+    left -= record.size;
+    table.records.push_back(record);
+  }
+  return table;
 }
 
 }  // namespace
@@ -221,6 +269,7 @@ std::vector<std::byte> StoreRoot::serialise() const {
   out.varint(before.size);
   out.varint(chunks.size());
   for (const DirectoryChunk& chunk : chunks) write_chunk(out, chunk);
+  if (has_remainders(header.numbers.type)) write_remainders(out, remainders);
   out.number(crc32c(bytes));
   return bytes;
 }
@@ -248,6 +297,7 @@ StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_
   if (count > in.rest().size() / kLeastChunkBytes)
     fail("{}: expected {} parts of a directory, found room for fewer", name, count);
   for (std::uint64_t n = 0; n < count; ++n) root.chunks.push_back(read_chunk(in));
+  root.remainders = read_remainders(in, root.header, root_offset, name);
   if (!in.good() || !in.rest().empty()) fail("{}: expected a directory, found other bytes", name);
   check_chunks(root, grid, root_offset, name);
   return root;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,11 +23,13 @@ namespace adamas::isosurface {
 /// The number of bytes of a file by parts of pages and their tables, without second copies of coarse pages.
 struct StoreBytes {
   std::uint64_t samples = 0, bounds = 0, gradients = 0;  ///< bounds: errors and ranges
+  std::uint64_t remainders = 0;                          ///< of numbers (number_remainders.h)
 
   StoreBytes& operator+=(const StoreBytes& other) {
     samples += other.samples;
     bounds += other.bounds;
     gradients += other.gradients;
+    remainders += other.remainders;
     return *this;
   }
 };
@@ -52,10 +55,25 @@ constexpr int time_order(std::span<const std::byte> coded) {
 /// that differences do not have.
 inline constexpr std::byte kAsBefore{3 | 1 << 2};
 
+/// What samples are made from.
+struct StoredNumbers {
+  StoredType type = StoredType::kUint8;  ///< sample_type_for() returns that of samples
+  std::string array{};                   ///< the array's name; empty where it has none
+
+  bool operator==(const StoredNumbers&) const = default;
+};
+
+/// The size and checksum of a record of remainders. Records lie one after another.
+struct RemainderRecord {
+  std::uint64_t size = 0;  ///< 0 where all remainders are 0
+  std::uint32_t checksum = 0;
+};
+
 /// The header of a block, which is one step in time or several that were added together. A volume is a block
 /// of one step.
 struct StoreHeader {
-  VolumeGrid grid;  ///< the grid, which is the same in all blocks
+  VolumeGrid grid;        ///< the grid, which is the same in all blocks
+  StoredNumbers numbers;  ///< the same in all blocks
   SampleCoding coding = SampleCoding::kInterpolation;
   bool gradients = false;         ///< whether pages hold directions of gradients; the same in all blocks
   std::uint32_t group_pages = 1;  ///< the number of page numbers in a group, a power of two (PageGroup)
@@ -109,6 +127,12 @@ struct PageEntry : PageSummary {
   std::uint32_t checksum = 0;
 };
 
+/// The records of remainders of a block: those of each step in the order of its planes.
+struct RemainderTable {
+  std::uint64_t offset = 0;              ///< the offset of the first record in the file
+  std::vector<RemainderRecord> records;  ///< none where numbers have no remainders
+};
+
 /// Pages whose numbers are equal except for the last nine bits have their directory entries in one piece,
 /// those of each page for all steps of the block one after another. Pages, and their copies, lie in the file
 /// group by group (PageGroup).
@@ -140,7 +164,7 @@ inline constexpr std::array<std::uint8_t, 8> kBlockMark{0xad, 'b', 'l', 'o', 'c'
 /// The first bytes of a file, from which everything else is found.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
-  static constexpr std::uint32_t kVersion = 5;
+  static constexpr std::uint32_t kVersion = 6;
 
   RootPlace root;  ///< the root of the last block
 
@@ -155,6 +179,7 @@ struct StoreRoot {
   StoreHeader header;
   RootPlace before;                    ///< the root of the block before; empty in the first block
   std::vector<DirectoryChunk> chunks;  ///< in ascending order of first page
+  RemainderTable remainders;
 
   [[nodiscard]] std::vector<std::byte> serialise() const;
   /// Reads the bytes. Throws Error, which begins with `name`, where they are damaged or contradictory: chunks

@@ -70,6 +70,11 @@ class ChecksumRepair {
     for (DirectoryChunk& chunk : root.chunks) {
       if (has(chunk.offset, chunk.size)) repair(grid, root.header, chunk);
     }
+    std::uint64_t offset = root.remainders.offset;
+    for (RemainderRecord& record : root.remainders.records) {
+      record.checksum = crc32c(at(offset, record.size));
+      offset += record.size;
+    }
     // A checksum has the same number of bytes whatever its value.
     std::ranges::copy(root.serialise(), bytes.begin());
     return root.before;

@@ -98,7 +98,7 @@ TEST(VolumeWriter, ADataFileOfAnotherName) {
   const VolumeGrid grid{{2, 2, 3}, SampleType::kUint16, {1, 1, 1}, {}};
   const auto samples = test::random_samples(grid);
   const test::Scratch scratch;
-  test::write_volume(scratch / "a.mhd", grid, samples, {"", scratch / "t.bin", "s 1.bin"});
+  test::write_volume(scratch / "a.mhd", grid, samples, {"", scratch / "t.bin", "s 1.bin", {}});
   std::filesystem::rename(scratch / "t.bin", scratch / "s 1.bin");
   expect_read_back(scratch / "a.mhd", grid, samples);
 }
@@ -106,7 +106,7 @@ TEST(VolumeWriter, ADataFileOfAnotherName) {
 TEST(VolumeWriter, NamesOfArraysAreQuoted) {
   const VolumeGrid grid{{2, 1, 1}, SampleType::kUint8, {1, 1, 1}, {}};
   const test::Scratch scratch;
-  test::write_volume(scratch / "a.vti", grid, test::random_samples(grid), {"a<\"b\">&c", {}, {}});
+  test::write_volume(scratch / "a.vti", grid, test::random_samples(grid), {"a<\"b\">&c", {}, {}, {}});
   EXPECT_EQ(read_grid_file(scratch / "a.vti").array_names(), "'a<\"b\">&c'");
 }
 

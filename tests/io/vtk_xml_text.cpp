@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/io/stored_type.h"
+#include "core/data/stored_type.h"
 #include "tests/io/volume_files.h"
 
 namespace adamas::test {

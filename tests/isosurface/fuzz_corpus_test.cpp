@@ -19,7 +19,7 @@ TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sam
 TEST(FuzzCorpus, BoundsCodec) { EXPECT_EQ(fuzz::replay("bounds_codec", fuzz::bounds_codec), 7u); }
 TEST(FuzzCorpus, GradientCodec) { EXPECT_EQ(fuzz::replay("gradient_codec", fuzz::gradient_codec), 5u); }
 TEST(FuzzCorpus, TimeCodec) { EXPECT_EQ(fuzz::replay("time_codec", fuzz::time_codec), 7u); }
-TEST(FuzzCorpus, StoreFile) { EXPECT_EQ(fuzz::replay("store_file", fuzz::store_file), 5u); }
+TEST(FuzzCorpus, StoreFile) { EXPECT_EQ(fuzz::replay("store_file", fuzz::store_file), 6u); }
 TEST(FuzzCorpus, StoreFormat) { EXPECT_EQ(fuzz::replay("store_format", fuzz::store_format), 7u); }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads the samples of stores by docs/file_formats.md and docs/stored_pages.md alone, to see that they say all that is needed.
+"""Reads the samples and numbers of stores by docs/file_formats.md and docs/stored_pages.md alone, to see that they say all that is needed.
 
 usage: read_store.py ADAMAS
 
@@ -17,13 +17,16 @@ import tempfile
 from store_codecs import Bytes, Page, codec_of, width
 
 
+FORMS = "bBhHiIqQfd"  # of the types of numbers
+
+
 class Store:
     """A store, of which words of samples can be read."""
 
     def __init__(self, data):
         self.data = data
         prologue = Bytes(data)
-        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 5
+        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 6
         root_offset, root_size = prologue.number("Q"), prologue.number("Q")
         root = Bytes(data[root_offset:root_offset + root_size])
         self.bytes = (1, 2, 2, 4)[root.number("B")]
@@ -31,9 +34,12 @@ class Store:
         root.take(8 * 15)
         root.sized()
         root.take(2 * 8)
+        self.numbers = FORMS[root.number("B")]
+        self.array = root.sized().decode()
         self.coding = root.number("B")
         root.take(1 + 4)
-        root.take(8 * root.varint() + 24)
+        steps = root.varint()
+        root.take(8 * steps + 32)
         tables = [root.sized() for _ in range(4)]
         root.varint(), root.varint()
         self.codec = codec_of(self.coding, tables[0], 8 * self.bytes)
@@ -45,6 +51,43 @@ class Store:
             first, offset, size, at, _ = (root.varint() for _ in range(5))
             root.take(4)
             self.read_chunk(Bytes(data[offset:offset + size]), first, at)
+        self.remainders = self.read_remainders(root) if self.numbers in "iIqQd" else []
+
+    def read_remainders(self, root):
+        """Those of all numbers, as whole numbers modulo 2^bits."""
+        bits = 8 * struct.calcsize(self.numbers)
+        plane = self.size[0] * self.size[1]
+        planes = max(1, 2 ** 20 // plane)
+        at, remainders = root.varint(), []
+        for first in range(0, self.size[2], planes):
+            count = plane * min(planes, self.size[2] - first)
+            size = root.varint()
+            if size == 0:
+                remainders += [0] * count
+                continue
+            root.take(4)
+            record = Bytes(self.data[at:at + size])
+            at += size
+            for begin in range(0, count, 1024):
+                run = min(1024, count - begin)
+                bits_each = record.number("B")
+                packed = int.from_bytes(record.take((bits_each * run + 7) // 8), "little")
+                for n in range(run):
+                    folded = packed >> bits_each * n & (1 << bits_each) - 1
+                    remainders.append((folded >> 1 ^ -(folded & 1)) % 2 ** bits)
+            assert record.at == size
+        return remainders
+
+    def exact(self, words):
+        """The numbers of samples, as their bytes."""
+        size = struct.calcsize(self.numbers)
+        numbers = [word_of_nearest(word, self.numbers) for word in words]
+        bits = 8 * size
+        if self.remainders:
+            numbers = [(n + r) % 2 ** bits for n, r in zip(numbers, self.remainders)]
+        if self.numbers == "d":
+            numbers = [n ^ 1 << 63 if n >> 63 else n ^ 2 ** 64 - 1 for n in numbers]
+        return b"".join(n.to_bytes(size, "little") for n in numbers)
 
     def extent(self, level):
         if level == self.top and self.depth > 0:
@@ -117,6 +160,19 @@ class Store:
         return [known[x, y, z] for z in range(k) for y in range(j) for x in range(i)]
 
 
+def word_of_nearest(word, form):
+    """The number that is nearest to a sample, of which there is a word; float64 as a number in the order of values."""
+    if form == "b":
+        return word - 32768 & 255
+    sample = struct.unpack("<f", (word ^ 2 ** 31 if word >> 31 else word ^ 2 ** 32 - 1).to_bytes(4, "little"))[0]
+    if form == "d":
+        bits = struct.unpack("<Q", struct.pack("<d", sample))[0]
+        return bits ^ 2 ** 64 - 1 if bits >> 63 else bits ^ 2 ** 63
+    bits = 8 * struct.calcsize(form)
+    low, high = (0, 2 ** bits - 1) if form.isupper() else (-2 ** (bits - 1), 2 ** (bits - 1) - 1)
+    return min(max(round(sample), low), high) % 2 ** bits
+
+
 def ordered(sample, form):
     """A sample as a word."""
     if form == "h":
@@ -153,6 +209,18 @@ def volumes():
         yield "uint16", "H", size, field(size, lambda *p: 7 * rng.randrange(values))
 
 
+def numbers():
+    """Name, type, size and numbers of types that samples do not have."""
+    rng = random.Random(4)
+    size = (23, 17, 20)
+    count = size[0] * size[1] * size[2]
+    yield "int8", "b", size, [rng.randrange(-128, 128) for _ in range(count)]
+    yield "float64", "d", size, [rng.choice((math.sin(n / 100), n, -n * 1e-320)) for n in range(count)]
+    for name, form, bits in (("int32", "i", 32), ("uint32", "I", 32), ("int64", "q", 64), ("uint64", "Q", 64)):
+        low = 0 if form.isupper() else -2 ** (bits - 1)
+        yield name, form, size, [low + (rng.randrange(2 ** bits) if n % 2 else n) for n in range(count)]
+
+
 def main(adamas):
     codings = set()
     with tempfile.TemporaryDirectory() as folder:
@@ -170,6 +238,16 @@ def main(adamas):
                 codings.add(found.coding)
                 if found.samples() != [ordered(sample, form) for sample in samples]:
                     sys.exit(f"{name} {size} {coding}: expected the samples of the volume, found others")
+        for name, form, size, wanted in numbers():
+            with open(raw, "wb") as file:
+                file.write(struct.pack(f"<{len(wanted)}{form}", *wanted))
+            os.remove(store)
+            subprocess.run([adamas, "store", raw, "--dimensions", ",".join(map(str, size)), "--type", name, "-q",
+                            "-o", store], check=True)
+            with open(store, "rb") as file:
+                found = Store(file.read())
+            if found.exact(found.samples()) != struct.pack(f"<{len(wanted)}{form}", *wanted):
+                sys.exit(f"{name} {size}: expected the numbers of the volume, found others")
     if codings != {0, 1, 2}:
         sys.exit(f"expected stores of all codings, found {sorted(codings)}")
 

@@ -71,6 +71,7 @@ class StoreOfRandomPages : public testing::TestWithParam<std::uint32_t> {
     header_.grid.origin = {-3, 0, 7};
     header_.grid.directions = {{{0, 1, 0}, {-0.6, 0, 0.8}, {0.8, 0, 0.6}}};
     header_.grid.space = "LAS";
+    header_.numbers = {StoredType::kUint16, "CT"};
     header_.coding = SampleCoding::kSplitEdge;
     header_.times = {0, 0.5};
     header_.sample_tables = random_bytes(random_, 100);
@@ -134,6 +135,7 @@ TEST_P(StoreOfRandomPages, GivesThemBack) {
     EXPECT_EQ(file.header().grid.origin.z, 7);
     EXPECT_EQ(file.header().grid.directions, header_.grid.directions);
     EXPECT_EQ(file.header().grid.space, "LAS");
+    EXPECT_EQ(file.header().numbers, header_.numbers);
     EXPECT_EQ(file.header().coding, header_.coding);
     EXPECT_EQ(file.steps(), 2u);
     EXPECT_EQ(file.times(), header_.times);

@@ -5,8 +5,6 @@
 
 namespace adamas::test {
 
-using namespace io;
-
 namespace {
 
 struct Types {

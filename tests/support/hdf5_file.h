@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/io/stored_type.h"
+#include "core/data/stored_type.h"
 
 namespace adamas::test {
-
-using namespace io;
 
 /// An HDF5 file that is written.
 class Hdf5File {

@@ -73,7 +73,7 @@ void check_options_of_store(const BuildOptions& options, const StoreHeader& stor
 }
 
 BuildReport build_report(const StoreFigures& figures) {
-  return {{figures.bytes.samples, figures.bytes.bounds, figures.bytes.gradients},
+  return {{figures.bytes.samples, figures.bytes.bounds, figures.bytes.gradients, figures.bytes.remainders},
           figures.pages,
           figures.file_bytes};
 }

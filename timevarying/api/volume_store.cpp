@@ -10,8 +10,10 @@
 #include "core/base/naming.h"
 #include "core/base/notes.h"
 #include "core/base/output_file.h"
+#include "core/data/stored_type.h"
 #include "core/data/volume_placement.h"
 #include "isosurface/extraction/complete_surface.h"
+#include "isosurface/storage/number_remainders.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_options.h"
 #include "isosurface/storage/stored_pages.h"
@@ -136,6 +138,18 @@ void check_times(const std::string& name, const std::vector<double>& times) {
     if (!std::isfinite(times[n]) || (n > 0 && !(times[n - 1] < times[n])))
       fail("{}: expected finite times that ascend, found {} for step {}", name, times[n], n);
   }
+}
+
+/// Throws Error if numbers do not have the samples that the grid says, or cannot be asked for.
+void check_numbers(const std::string& name, const SeriesSource& series) {
+  if (!series.numbers) return;
+  if (sample_type_for(*series.numbers) != series.grid.type)
+    fail("{}: expected samples of type {} for numbers of type {}, found {}", name,
+         sample_name(sample_type_for(*series.numbers)), to_string(*series.numbers),
+         sample_name(series.grid.type));
+  if (has_remainders(*series.numbers) && !series.number_planes)
+    fail("{}: expected a function for planes of numbers of type {}, found none", name,
+         to_string(*series.numbers));
 }
 
 StoreFacts::Coding coding_of(SampleCoding coding, bool is_plain) {
@@ -284,6 +298,7 @@ BuildReport VolumeStore::build(const std::filesystem::path& path, const SeriesSo
   series.grid.check(name);
   check_volume_dimensions(name, series.grid);
   check_times(name, series.times);
+  check_numbers(name, series);
   const StoreOptions how = store_options(options);
   OutputFile file(path);
   const StoreFigures figures = build_series(file.temporary(), name, series, how, progress);
@@ -313,6 +328,7 @@ BuildReport VolumeStore::append(const std::filesystem::path& path, const SeriesS
                                 const BuildOptions& options, Progress& progress) {
   const std::string name = path.string();
   check_times(name, series.times);
+  check_numbers(name, series);
   const StoreOptions how = store_options(options);
   const StoreLock lock(path);
   check_options_of_store(options, StoreFile(path).header(), name);
@@ -320,6 +336,10 @@ BuildReport VolumeStore::append(const std::filesystem::path& path, const SeriesS
 }
 
 const VolumeGrid& VolumeStore::grid() const { return contents_->grid(); }
+
+StoredType VolumeStore::number_type() const { return contents_->file().header().numbers.type; }
+
+const std::string& VolumeStore::array() const { return contents_->file().header().numbers.array; }
 
 std::uint32_t VolumeStore::steps() const { return contents_->file().steps(); }
 
@@ -339,7 +359,8 @@ StoreFacts VolumeStore::facts() const {
   facts.pages = file.grid().page_count();
   facts.blocks = file.blocks();
   facts.group_pages = header.group_pages;
-  facts.bytes = {bytes.samples, bytes.bounds, bytes.gradients};
+  facts.number_bytes = header.grid.samples() * stored_bytes(header.numbers.type) * file.steps();
+  facts.bytes = {bytes.samples, bytes.bounds, bytes.gradients, bytes.remainders};
   facts.file_bytes = file.size();
   facts.unfinished_bytes = file.unfinished_bytes();
   return facts;
@@ -422,6 +443,16 @@ PageReads VolumeStore::restore_steps(const StepRange& steps, const VolumePart& p
   return naming(contents_->name(), [&] {
     return timevarying::restore_steps(contents_->file(), steps, restored, contents_->memory(), sink,
                                       progress);
+  });
+}
+
+PageReads VolumeStore::restore_numbers(const StepRange& steps, const VolumePart& part, const StepSink& sink,
+                                       Progress& progress) {
+  contents_->check(steps);
+  const RestoredPart restored = contents_->part(part);
+  return naming(contents_->name(), [&] {
+    return timevarying::restore_numbers(contents_->file(), steps, restored, contents_->memory(), sink,
+                                        progress);
   });
 }
 

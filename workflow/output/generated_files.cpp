@@ -6,6 +6,7 @@
 
 #include "adamas/volume_output.h"
 #include "core/data/multi_material_data.h"
+#include "core/data/stored_type.h"
 #include "core/io/multi_material_writer.h"
 #include "core/io/volume_writer.h"
 #include "datasets/buckyball.h"
@@ -100,7 +101,7 @@ WrittenVolume write_buckyball(const std::array<std::uint64_t, 3>& samples, Sampl
       sink(plane);
     }
   };
-  return {grid, write_volume_output(output, grid, "buckyball", make, outputs)};
+  return {grid, write_volume_output(output, grid, stored_type(grid.type), "buckyball", make, outputs)};
 }
 
 }  // namespace adamas

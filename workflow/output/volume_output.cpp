@@ -23,15 +23,16 @@ void note_lost(const std::filesystem::path& output, const VolumeGrid& grid, Prog
   }
 }
 
-SampleType written_type(const std::filesystem::path& output, const VolumeGrid& grid) {
-  return writes_values(output, grid) ? SampleType::kFloat32 : grid.type;
+StoredType written_type(const std::filesystem::path& output, const VolumeGrid& grid, StoredType numbers) {
+  return writes_values(output, grid) ? StoredType::kFloat32 : numbers;
 }
 
 std::size_t write_volume_output(const std::filesystem::path& output, const VolumeGrid& grid,
-                                const std::string& array, const std::function<void(const PlaneSink&)>& make,
-                                OutputSet& outputs) {
+                                StoredType numbers, const std::string& array,
+                                const std::function<void(const PlaneSink&)>& make, OutputSet& outputs) {
   VolumeWriterOptions options;
   options.array = array;
+  options.numbers = numbers;
   const auto write = [&](const std::filesystem::path& path) {
     VolumeWriter writer(path, grid, options);
     make([&](std::span<const std::byte> samples) { writer.write_plane(samples); });

@@ -12,7 +12,7 @@
 #include "adamas/store_files.h"
 #include "adamas/text.h"
 #include "core/base/notes.h"
-#include "core/io/stored_type.h"
+#include "core/data/stored_type.h"
 #include "core/io/zarr_array.h"
 
 namespace adamas {
@@ -131,13 +131,13 @@ void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content
 std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
                                  std::size_t level, PageReads& counts, Progress& progress) const {
   const RestoredPart& part = content.levels[level];
-  VolumeGrid grid = part.grid;
-  if (grid.is_scaled()) grid.type = SampleType::kFloat32;
+  const StoredType numbers = file.header().numbers.type;
   std::optional<std::uint64_t> count;
   if (content.is_series) count = steps.size();
   // A first attempt that met damage may have left steps.
   std::filesystem::remove_all(folder_->file(std::to_string(level)));
-  ZarrArray array(folder_->file(std::to_string(level)), grid, count);
+  ZarrArray array(folder_->file(std::to_string(level)), part.grid,
+                  part.grid.is_scaled() ? StoredType::kFloat32 : numbers, count);
   std::vector<float> values;
   const std::uint64_t bytes_each = array.slab_bytes() + restored_slab_bytes(part);
   std::uint64_t written = 0;
@@ -146,12 +146,12 @@ std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, co
     for (std::uint32_t step = some.first; step <= some.last; ++step) open.emplace_back(array, written++);
     const auto sink = [&](std::uint32_t step, std::span<const std::byte> plane) {
       if (part.grid.is_scaled()) {
-        find_values(part.grid, plane, values);
+        find_values(part.grid, numbers, plane, values);
         plane = std::as_bytes(std::span(values));
       }
       open[step - some.first].write_plane(plane);
     };
-    counts += restore_steps(file, some, part, content.memory, sink, progress);
+    counts += restore_numbers(file, some, part, content.memory, sink, progress);
   }
   return array.bytes();
 }

@@ -28,6 +28,12 @@ namespace {
 
 bool is_list(const std::filesystem::path& output) { return file_extension(output) == ".pvd"; }
 
+/// Returns the name of a store's samples in files.
+std::string array_name(const StoreFile& file) {
+  const std::string& array = file.header().numbers.array;
+  return array.empty() ? "samples" : array;
+}
+
 /// Throws Error (kUsage) where values contradict each other.
 void check_request(const RestoreRequest& request) {
   if (is_zarr(request.output) || is_list(request.output)) return;
@@ -143,7 +149,7 @@ class PvdSeries {
         sinks_[n - some.first](plane);
       };
       try {
-        counts += timevarying::restore_steps(file_, some, part_, memory_, sink, progress_);
+        counts += restore_numbers(file_, some, part_, memory_, sink, progress_);
       } catch (const DamagedPage& damage) {
         damage_ = damage;
         throw;
@@ -154,7 +160,8 @@ class PvdSeries {
       sinks_.push_back(sink);
       write_rest(some, counts);
     };
-    bytes_ += write_volume_output(path(step), part_.grid, "samples", make, outputs_);
+    bytes_ += write_volume_output(path(step), part_.grid, file_.header().numbers.type, array_name(file_),
+                                  make, outputs_);
   }
 
   std::filesystem::path list_;
@@ -205,9 +212,11 @@ StepRange Restoration::wanted_steps() const {
 void Restoration::write_step() {
   const std::uint32_t step = wanted_step(request_.step, *file_, progress_);
   const auto make = [&](const PlaneSink& sink) {
-    counts_ = restore_step(*file_, step, parts_.front(), request_.open.memory, sink, progress_);
+    const auto to_file = [&sink](std::uint32_t, std::span<const std::byte> plane) { sink(plane); };
+    counts_ = restore_numbers(*file_, {step, step}, parts_.front(), request_.open.memory, to_file, progress_);
   };
-  bytes_ = write_volume_output(output_, parts_.front().grid, "samples", make, outputs_);
+  bytes_ = write_volume_output(output_, parts_.front().grid, file_->header().numbers.type, array_name(*file_),
+                               make, outputs_);
   steps_.kept = {step};
 }
 
@@ -248,7 +257,7 @@ RestoreReport Restoration::run() {
   }
   RestoreReport report;
   report.grid = parts_.front().grid;
-  report.written = written_type(output_, report.grid);
+  report.written = written_type(output_, report.grid, file_->header().numbers.type);
   report.lod = parts_.front().lod;
   report.lods = parts_.size();
   report.steps = std::move(steps_.kept);

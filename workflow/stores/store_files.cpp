@@ -23,6 +23,7 @@ StoreReport make_report(const StoredSteps& steps, const StoreFigures& figures) {
   report.steps = steps.count();
   report.input_bytes = steps.input_bytes();
   report.stored = build_report(figures);
+  report.numbers = steps.number_type();
   report.array = steps.array();
   report.infinite_samples = steps.infinite_samples();
   return report;

@@ -7,6 +7,7 @@
 #include "adamas/notes.h"
 #include "core/base/error.h"
 #include "core/base/notes.h"
+#include "core/data/stored_type.h"
 #include "core/io/volume_input.h"
 #include "isosurface/volume/page_grid.h"
 #include "isosurface/volume/samples.h"
@@ -58,6 +59,9 @@ class StoredSteps::Open {
       infinite_ += std::isfinite(value) ? 0 : 1;
     }
   }
+  void read_numbers(std::uint64_t k, std::span<std::byte> numbers) {
+    reader_.read_stored(k * reader_.grid().plane_samples(), numbers);
+  }
   [[nodiscard]] const VolumeReader& reader() const { return reader_; }
   [[nodiscard]] std::uint64_t infinite() const { return infinite_; }
 
@@ -71,9 +75,13 @@ StoredSteps::StoredSteps(std::vector<VolumeInputStep> steps, OutputSet& outputs,
     : steps_(std::move(steps)), outputs_(outputs), progress_(progress) {
   open(0);
   grid_ = open_->reader().grid();
+  const VolumeSource& source = open_->reader().source();
+  number_type_ = source.scaled() ? stored_type(grid_.type) : source.stored;
 }
 
 StoredSteps::~StoredSteps() = default;
+
+bool StoredSteps::keeps_numbers() const { return number_type_ != stored_type(grid_.type); }
 
 SeriesSource StoredSteps::source() {
   SeriesSource series{grid_, {}, [this](std::uint32_t n) -> PlaneSource {
@@ -83,6 +91,11 @@ SeriesSource StoredSteps::source() {
                         };
                       }};
   for (const VolumeInputStep& step : steps_) series.times.push_back(step.time);
+  series.array = array_;
+  if (keeps_numbers()) series.numbers = number_type_;
+  series.number_planes = [this](std::uint64_t k, std::span<std::byte> numbers) {
+    open_->read_numbers(k, numbers);
+  };
   return series;
 }
 
@@ -90,9 +103,13 @@ void StoredSteps::close() {
   if (open_ == nullptr) return;
   input_bytes_ += open_->reader().source().sample_file_bytes();
   // The notes about the times of one file are mostly the same.
-  const std::string note = open_->reader().note();
+  const std::string note =
+      open_->reader().note() + (keeps_numbers() && open_->reader().loses_digits()
+                                    ? ": surfaces and pictures show these, and 'restore' "
+                                      "gives the numbers back as they are"
+                                    : "");
   if (note != last_note_) {
-    if (open_->reader().loses_digits()) {
+    if (open_->reader().loses_digits() && !keeps_numbers()) {
       losses_.emplace_back(open_->reader().greatest_change(), note);
     } else if (!note.empty()) {
       progress_.note(NoteKind::kRemark, note);
@@ -130,7 +147,12 @@ void StoredSteps::open(std::uint32_t n) {
   note_array(step, open_->reader().source());
   const VolumeGrid& grid = open_->reader().grid();
   check_volume_dimensions(step.name, grid);
-  if (n > 0 && grid != grid_) refuse_grid(step.name, grid, steps_.front().name, grid_);
+  if (n == 0) return;
+  if (grid != grid_) refuse_grid(step.name, grid, steps_.front().name, grid_);
+  const VolumeSource& source = open_->reader().source();
+  if (keeps_numbers() && (source.scaled() || source.stored != number_type_))
+    fail("{}: expected numbers of type {} as {} has, found {}", step.name, to_string(number_type_),
+         steps_.front().name, source.scaled() ? "some with a scale" : to_string(source.stored));
 }
 
 }  // namespace adamas::workflow

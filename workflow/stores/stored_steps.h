@@ -29,6 +29,8 @@ class StoredSteps {
   StoredSteps& operator=(const StoredSteps&) = delete;
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
+  /// Returns the type of the numbers that samples are read from, of which restoring loses nothing.
+  [[nodiscard]] StoredType number_type() const { return number_type_; }
   /// Returns the source of a store; this object must outlive it.
   [[nodiscard]] SeriesSource source();
   /// Closes the last step and writes notes about all steps.
@@ -42,6 +44,8 @@ class StoredSteps {
 
  private:
   class Open;
+  /// Returns whether numbers are of a type that samples do not have.
+  [[nodiscard]] bool keeps_numbers() const;
   void open(std::uint32_t n);
   void close();
   /// Notes which array is taken where a file has several and none was named.
@@ -51,6 +55,7 @@ class StoredSteps {
   OutputSet& outputs_;
   Progress& progress_;
   VolumeGrid grid_;
+  StoredType number_type_ = StoredType::kUint8;
   std::unique_ptr<Open> open_;
   std::uint32_t opened_ = 0;
   std::uint64_t input_bytes_ = 0;

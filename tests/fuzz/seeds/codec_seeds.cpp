@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -12,7 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/volume_store.h"
 #include "core/base/checksum.h"
+#include "core/data/stored_type.h"
 #include "isosurface/compression/bounds/bounds_stages.h"
 #include "isosurface/compression/gradients/gradient_codec.h"
 #include "isosurface/compression/ranks/ranked_codec.h"
@@ -250,6 +253,7 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
   root.header.group_pages = group_pages;
   if (first_step > 0) root.before = {5, 20};
   root.header.grid = grid;
+  root.header.numbers.type = stored_type(grid.type);
   root.header.times.resize(steps);
   for (std::size_t n = 0; n < root.header.times.size(); ++n) root.header.times[n] = static_cast<double>(n);
   root.header.sample_tables = root.header.bounds_tables = {std::byte{1}, std::byte{2}};
@@ -290,6 +294,37 @@ void make_store_file(const std::filesystem::path& folder, const test::GoldenSeri
   const std::string made = test::bytes_of(scratch / "a.adm");
   const auto bytes = std::as_bytes(std::span(made));
   write(folder / "store_file", series.name, {bytes.begin(), bytes.end()});
+}
+
+/// Makes a whole store of float64 numbers, in two steps.
+void make_number_store(const std::filesystem::path& folder) {
+  const test::Scratch scratch;
+  SeriesSource series;
+  series.grid.dimensions = {17, 5, 6};
+  series.grid.type = SampleType::kFloat32;
+  series.times = {0, 1};
+  const auto number = [](std::uint64_t n, std::uint64_t k) {
+    return std::sin(0.1 * static_cast<double>(n + k));
+  };
+  series.planes = [&number](std::uint32_t) {
+    return [&number](std::uint64_t k, std::span<std::byte> samples) {
+      for (std::size_t n = 0; n < samples.size() / sizeof(float); ++n) {
+        const auto sample = static_cast<float>(number(n, k));
+        std::memcpy(samples.data() + n * sizeof sample, &sample, sizeof sample);
+      }
+    };
+  };
+  series.numbers = StoredType::kFloat64;
+  series.number_planes = [&number](std::uint64_t k, std::span<std::byte> numbers) {
+    for (std::size_t n = 0; n < numbers.size() / sizeof(double); ++n) {
+      const double exact = number(n, k);
+      std::memcpy(numbers.data() + n * sizeof exact, &exact, sizeof exact);
+    }
+  };
+  VolumeStore::build(scratch / "a.adm", series);
+  const std::string made = test::bytes_of(scratch / "a.adm");
+  const auto bytes = std::as_bytes(std::span(made));
+  write(folder / "store_file", "numbers", {bytes.begin(), bytes.end()});
 }
 
 VolumeGrid grid_of(SampleType type, std::array<std::uint64_t, 3> dimensions) {
@@ -351,6 +386,7 @@ void make(const std::filesystem::path& folder) {
   make_store_file<std::uint8_t>(folder, series[2], {17, 9, 4});
   make_store_file<std::uint16_t>(folder, series[3], {18, 5, 4});
   make_store_file<float>(folder, series[4], {18, 3, 4});
+  make_number_store(folder);
 }
 
 }  // namespace
