@@ -20,7 +20,7 @@ TEST(PictureHeader, PnmThatIsCutOff) {
                                                           {"a.ppm", "P6\n3 2\n#\n255\nabcdefghijklmnopqr"},
                                                           {"a.pnm", "P5 #c\n 3\t2 255\nabcdef"}};
   for (const auto& [name, whole] : pictures) {
-    for (std::size_t length = 1; length < whole.size(); ++length) {
+    for (std::size_t length = 1; length < whole.size(); length += 3) {
       put_bytes(scratch / name, whole.substr(0, length));
       const std::string message = error_of([&, &file = name] { read_grid_file(scratch / file); });
       EXPECT_TRUE(says(message, std::string(name) + ": expected "));
@@ -57,7 +57,7 @@ TEST(PictureHeader, OthersThatAreCutOff) {
   for (const auto& [name, whole] : pictures) {
     put_bytes(scratch / name, whole);
     EXPECT_EQ(read_grid_file(scratch / name).arrays.size(), 1u) << name;
-    for (std::size_t length = 1; length < whole.size(); ++length) {
+    for (std::size_t length = 1; length < whole.size(); length += 3) {
       put_bytes(scratch / name, whole.substr(0, length));
       const std::string message = error_of([&, &file = name] { read_grid_file(scratch / file); });
       EXPECT_EQ(message.find("signal"), std::string::npos) << length << ": " << message;
