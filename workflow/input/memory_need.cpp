@@ -66,12 +66,13 @@ std::optional<std::array<double, 6>> extent_of(std::string_view text, std::strin
 }
 
 /// Whether an array is read as runs if labels are taken from it.
-bool may_be_runs(const VolumeSource& source) {
+bool may_be_runs(const ImageArray& array) {
   bool whole = false;
-  visit_stored_type(source.stored, [&whole]<class Stored>(Stored) {
+  visit_stored_type(array.source.stored, [&whole]<class Stored>(Stored) {
     whole = std::is_integral_v<Stored> && !std::is_same_v<Stored, std::uint64_t>;
   });
-  return whole && source.components == 1 && !source.scaled();
+  const bool labels = array.source.components == 1 || (!array.segments.empty() && !array.planar);
+  return whole && labels && !array.source.scaled();
 }
 
 /// Returns what the header of a file says; none where it is not known without reading the file. `labels`: the
@@ -94,7 +95,7 @@ std::optional<HeaderFacts> facts_of(const std::filesystem::path& path,
     facts.rows = facts.cells / static_cast<double>(std::max<std::uint64_t>(header.dimensions[0], 1));
     for (const ImageArray& array : header.arrays) {
       const bool of_labels = labels && (header.arrays.size() == 1 || array.name == *labels);
-      if (!of_labels || header.times > 1 || !may_be_runs(array.source))
+      if (!of_labels || header.times > 1 || !may_be_runs(array))
         facts.numbers += facts.cells * static_cast<double>(array.source.components);
     }
     return facts;
