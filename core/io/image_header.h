@@ -63,6 +63,8 @@ struct ImageHeader {
   /// set.
   std::optional<VolumeSource> material_names;
   std::map<std::int64_t, std::string> label_names{};  ///< names of labels by their values; usually empty
+  /// Colours of labels by their values: red, green and blue from 0 to 1; usually empty.
+  std::map<std::int64_t, std::array<double, 3>> label_colours{};
 };
 
 /// Makes the header of a file of bare samples.

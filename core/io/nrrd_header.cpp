@@ -219,6 +219,13 @@ class Parser {
   }
 
  private:
+  struct Segment {
+    std::string name;
+    std::optional<std::int64_t> label;
+    std::optional<std::uint32_t> layer;
+    std::optional<std::array<double, 3>> colour;
+  };
+
   std::optional<std::string_view> next_line() {
     if (at_ >= text_.size()) return {};
     const std::size_t end = text_.find('\n', at_);
@@ -240,9 +247,12 @@ class Parser {
              header_.components - 1, *segment.layer);
     }
     if (header_.components > 1) return set_layers();
-    for (const auto& [number, segment] : segments_) {
-      if (!segment.name.empty()) header_.segments.emplace(segment.label.value_or(number + 1), segment.name);
-    }
+    for (const auto& [number, segment] : segments_) add_segment(segment.label.value_or(number + 1), segment);
+  }
+
+  void add_segment(std::int64_t label, const Segment& segment) {
+    if (!segment.name.empty()) header_.segments.emplace(label, segment.name);
+    if (segment.colour) header_.colours.emplace(label, *segment.colour);
   }
 
   /// Sets the segments of several layers. In older files no segment names its layer or its number: each has a
@@ -255,14 +265,13 @@ class Parser {
            segments_.size(), header_.components);
     if (segments_.size() > kMostLayerSegments)
       fail("{}: expected at most {} segments, found {}", name_, kMostLayerSegments, segments_.size());
-    for (const auto& [number, segment] : segments_) {
+    for (auto& [number, segment] : segments_) {
       if (!older && !segment.layer)
         fail("{}: expected Segment{}_Layer beside those of other segments, found none", name_, number);
       const std::size_t place = header_.layered.size();
-      const auto label = static_cast<std::int64_t>(place) + 1;
-      const std::string name = segment.name.empty() ? fmt::format("segment {}", number) : segment.name;
-      header_.segments.emplace(label, name);
-      header_.layered.push_back({name, segment.layer.value_or(place), segment.label.value_or(1)});
+      if (segment.name.empty()) segment.name = fmt::format("segment {}", number);
+      add_segment(static_cast<std::int64_t>(place) + 1, segment);
+      header_.layered.push_back({segment.name, segment.layer.value_or(place), segment.label.value_or(1)});
     }
   }
 
@@ -277,6 +286,18 @@ class Parser {
     if (what == "Name") segments_[*number].name = value;
     if (what == "LabelValue") segments_[*number].label = segment_number<std::int64_t>(value);
     if (what == "Layer") segments_[*number].layer = segment_number<std::uint32_t>(value);
+    if (what == "Color") segments_[*number].colour = segment_colour(value);
+  }
+
+  [[nodiscard]] std::array<double, 3> segment_colour(std::string_view text) const {
+    const Words words = split(text, kBlanks);
+    std::array<double, 3> colour{};
+    for (std::size_t i = 0; i < colour.size(); ++i) {
+      const auto part = words.size() == colour.size() ? nrrd_number<double>(words[i]) : std::nullopt;
+      if (!part || !(*part >= 0 && *part <= 1)) fail_field("three numbers of a colour from 0 to 1", text);
+      colour[i] = *part;
+    }
+    return colour;
   }
 
   template <class T>
@@ -401,11 +422,6 @@ class Parser {
   std::size_t at_ = 0, line_ = 0;
   NrrdHeader header_;
   bool has_encoding_ = false;
-  struct Segment {
-    std::string name;
-    std::optional<std::int64_t> label;
-    std::optional<std::uint32_t> layer;
-  };
   std::map<std::uint16_t, Segment> segments_;
   NrrdAxisFields places_;
 };
@@ -456,6 +472,7 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   source.big_endian = header.big_endian;
   source.grid.dimensions = image.dimensions;
   image.label_names = header.segments;
+  image.label_colours = header.colours;
   // Segmentations are taken for labels without being named, as those that adamas writes.
   image.arrays.push_back({.name = header.segments.empty() ? "" : kWrittenLabels,
                           .centering = Centering::kPoints,

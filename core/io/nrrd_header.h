@@ -34,6 +34,8 @@ struct NrrdHeader {
   std::size_t header_bytes = 0;  ///< size of the header with its empty line
   /// The names of the segments of a segmentation of 3D Slicer (.seg.nrrd), by their labels.
   std::map<std::int64_t, std::string> segments{};
+  /// The colours of these, as ImageHeader has them.
+  std::map<std::int64_t, std::array<double, 3>> colours{};
   /// The segments themselves if they lie in several layers, which are the components; labels are then their
   /// places in this list, from 1 on.
   std::vector<LayerSegment> layered{};
