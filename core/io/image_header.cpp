@@ -14,6 +14,7 @@
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/material_arrays.h"
+#include "core/io/text_array.h"
 #include "core/io/volume_reader.h"
 #include "core/io/volume_unpacking.h"
 #include "core/io/whole_pieces.h"
@@ -142,25 +143,6 @@ GridArray read_array(const ImageArray& array, bool labels, std::string& remark) 
   visit_stored_type(array.source.stored, [&]<class Stored>(Stored) { read_numbers<Stored>(reader, result); });
   if (array.planar) interleave(result);
   return result;
-}
-
-/// Reads texts, each of which ends with a zero byte.
-std::vector<std::string> read_texts(VolumeSource source) {
-  source.grid.dimensions = {measure_vtk_array(source), 1, 1};
-  if (source.grid.samples() == 0) return {};
-  if (source.grid.samples() > kLongestHeader)
-    fail("{}: expected material names of at most {} bytes, found {}", source.name, kLongestHeader,
-         source.grid.samples());
-  VolumeReader reader = open_in_memory(std::move(source));
-  std::string text(static_cast<std::size_t>(reader.source().values()), '\0');
-  reader.read_stored(0, std::as_writable_bytes(std::span(text)));
-  std::vector<std::string> texts;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\0', begin), text.size());
-    texts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return texts;
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include "core/io/named_colours.h"
 
+#include "core/io/input_file.h"
+#include "core/io/interface_mesh_io.h"
 #include "core/io/labelled_network.h"
 #include "tests/io/volume_files.h"
 
@@ -64,6 +66,25 @@ TEST(NamedColours, ThatAreNoneAreRefused) {
                      "expected three numbers of a colour from 0 to 1"))
         << colour;
   }
+}
+
+TEST(NamedColours, OfInterfacesComeBack) {
+  const test::Scratch scratch;
+  InterfaceMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.materials = {"bone", "air & more", "skin"};
+  mesh.triangles = {{{0, 1, 2}, MaterialId(0), MaterialId(1)}};
+  const NamedColours colours{
+      {"air & more", {0.125, 1, 0.1}}, {"skin", {0, 0, 1}}, {"no material", {1, 1, 1}}};
+  write_interface_mesh(scratch / "a.vtp", InterfaceMesh(mesh), colours);
+  EXPECT_EQ(find_named_colours(scratch / "a.vtp", {}),
+            (NamedColours{{"air & more", {0.125, 1, 0.1}}, {"skin", {0, 0, 1}}}));
+  EXPECT_EQ(read_interface_mesh(scratch / "a.vtp").materials, mesh.materials);
+  // Materials without colours leave the file as it was.
+  write_interface_mesh(scratch / "b.vtp", InterfaceMesh(mesh), {{"no material", {1, 1, 1}}});
+  write_interface_mesh(scratch / "c.vtp", mesh);
+  EXPECT_EQ(read_file(scratch / "b.vtp"), read_file(scratch / "c.vtp"));
+  EXPECT_TRUE(find_named_colours(scratch / "b.vtp", {}).empty());
 }
 
 }  // namespace

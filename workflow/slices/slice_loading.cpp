@@ -69,7 +69,7 @@ void load_original(const SliceRequest& request, const InputOptions& options, Pro
   }
   const InputOptions from = needed_main_file(options);
   input.data = std::make_unique<MultiMaterialData>(load_data(from, progress));
-  input.colours = find_named_colours(from.path, from.region_names);
+  input.colours.merge(find_named_colours(from.path, from.region_names));
   if (!input.mesh) return;
   // With given interfaces the mesh may have another box.
   if (!given) check_box(*input.mesh, input.name, *input.data);
@@ -119,7 +119,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
     input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
     input.network = std::move(read.source);
     input.cells = std::move(read.cells);
-    input.colours = find_named_colours(kind == InputKind::kNetwork ? "" : path, options.region_names);
+    input.colours = find_named_colours(kind == InputKind::kNetwork ? path : "", options.region_names);
     check(input);
     return input;
   }
@@ -130,6 +130,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
     wrong_usage("{}: expected interfaces as INPUT, found {}", option, path);
   if (meshed) {
     input.mesh = load_resampled_mesh(path, progress);
+    input.colours = find_named_colours(path, {});
     from.path = request.original;
     if (!request.original.empty()) check_input_file(request.original);
     const std::string of_grid = grid_option(request, false);
