@@ -76,7 +76,9 @@ void add_material_options(const Command& command, InputOptions& options, const s
   input.add_value("--fraction-scale", "S", "What a volume fraction of 1 is stored as", data.fraction_scale,
                   parse_positive);
   input.add_option("--rest", "NAME", "One more material, of what the others leave of 1", data.rest);
-  input.add_option("--labels", "FILE-or-ARRAY", "Whole numbers that name the material of each cell or point",
+  input.add_option("--labels", "FILE-or-ARRAY",
+                   "Whole numbers that name the material of each cell or point; of a folder of DICOM with "
+                   "several series one of them, by its description or UID",
                    data.labels);
   input.add_converted_each("--field", field_type, field, std::move(take_field));
   input
@@ -122,10 +124,10 @@ void add_reconstruction_options(const Command& command, bool& smooth_labels, Fra
 }
 
 void add_region_names(const Command& command, InputOptions& options) {
-  command.in_group("Input").add_file(
-      "--region-names", "FILE",
-      "Names of labels, of --labels or of a network: LABEL NAME a line, or a table of ITK-SNAP",
-      options.region_names);
+  command.in_group("Input").add_file("--region-names", "FILE",
+                                     "Names of labels, of --labels or of a network: LABEL NAME a line, or a "
+                                     "table of ITK-SNAP, whose colours slices have",
+                                     options.region_names);
 }
 
 void add_interface_options(const Command& command, InputOptions& options) {

@@ -157,7 +157,8 @@ void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool 
 void write_interfaces(const MeshOutputs& outputs, const InterfaceTriangles& interfaces,
                       const AdaptiveMesh& mesh, Session& session) {
   session.console.step("writing interfaces", -1);
-  session.outputs.write(outputs.interfaces, [&](const auto& path) { write_mesh(path, interfaces); });
+  session.outputs.write(outputs.interfaces,
+                        [&](const auto& path) { write_mesh(path, interfaces, outputs.colours); });
   session.outputs.write(outputs.picture.file, [&](const auto& path) {
     DrawingOptions drawing = outputs.picture.drawing;
     drawing.domain = mesh.domain();
@@ -170,7 +171,7 @@ Figures write_meshes(const MeshOutputs& outputs, const AdaptiveMesh& mesh, std::
   ledgers.push_back({"mesh", material_totals(mesh)});
   session.outputs.write(outputs.mesh, [&](const auto& path) {
     session.console.step("writing " + outputs.mesh, -1);
-    write_mesh(path, mesh);
+    write_mesh(path, mesh, outputs.colours);
   });
   Figures cut = write_cut_mesh(outputs.cut, mesh, ledgers, session);
   session.outputs.write(outputs.ledger,

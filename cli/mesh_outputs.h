@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "adamas/cut_mesh.h"
+#include "adamas/material_colours.h"
 #include "adamas/meshes.h"
 #include "adamas/resample.h"
 #include "cli/command.h"
@@ -28,6 +29,7 @@ struct CutMeshOutput {
 /// The files of a resampled mesh, each empty where it is not wanted.
 struct MeshOutputs {
   std::string mesh, interfaces, ledger;
+  MaterialColours colours{};  ///< those that the input has for materials
   CutMeshOutput cut;
   PictureOptions picture;
 

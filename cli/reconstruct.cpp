@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "adamas/files.h"
+#include "adamas/material_colours.h"
 #include "adamas/notes.h"
 #include "adamas/picture.h"
 #include "cli/command.h"
@@ -142,7 +143,9 @@ void run(Options& options, Session& session) {
   Figures figures = print_result(result, given, console);
   figures["triangles"] = result.mesh.triangles.size();
   console.step("writing", -1);
-  session.outputs.write(options.output, [&](const auto& path) { write_mesh(path, result.mesh); });
+  session.outputs.write(options.output, [&](const auto& path) {
+    write_mesh(path, result.mesh, find_material_colours(options.input));
+  });
   console.check();
   session.outputs.write(options.picture.file, [&](const auto& path) {
     DrawingOptions drawing = options.picture.drawing;

@@ -335,6 +335,7 @@ void run(Options& options, Session& session) {
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
   const AdaptiveMesh mesh = resample_input(options, console);
+  options.outputs.colours = find_material_colours(options.input);
   print_resampled(mesh.report(), console);
   Figures figures = resample_json(mesh.report());
   finish_interfaces(options, mesh, figures, session);

@@ -10,13 +10,16 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/data/stored_type.h"
 #include "core/io/grid_axes.h"
@@ -492,41 +495,122 @@ std::map<std::string, Series> series_in(const std::filesystem::path& folder, std
   return series;
 }
 
-/// Chooses a series by its description or its UID.
-Series choose(const std::string& name, std::map<std::string, Series> series, const std::string& wanted) {
+/// The series of a folder as messages list them.
+std::string text_of_series(const std::map<std::string, Series>& series) {
   std::string list;
-  std::vector<const Series*> found;
   for (const auto& [uid, own] : series) {
     list += fmt::format("{}'{}' ({} files)", list.empty() ? "" : ", ", own.text.empty() ? uid : own.text,
                         own.files.size());
+  }
+  return list.empty() ? "none" : list;
+}
+
+/// Chooses a series by its description or its UID.
+Series choose(const std::string& name, const std::map<std::string, Series>& series,
+              const std::string& wanted) {
+  std::vector<const Series*> found;
+  for (const auto& [uid, own] : series) {
     if (wanted.empty() || wanted == uid || wanted == own.text) found.push_back(&own);
   }
   if (found.size() == 1) return *found.front();
+  if (wanted.empty() && !series.empty())
+    fail(
+        "{}: expected one series of DICOM, or the description or UID of one (--array of volumes, --labels or "
+        "--fraction of materials), found {}",
+        name, text_of_series(series));
   fail("{}: expected one series of DICOM{}, found {}", name, wanted.empty() ? "" : " '" + wanted + "'",
-       list.empty() ? "none" : list);
+       text_of_series(series));
+}
+
+void silence_gdcm() {
+  gdcm::Trace::WarningOff();
+  gdcm::Trace::ErrorOff();
+  gdcm::Trace::DebugOff();
+}
+
+GridFile read_series(const Series& series, const std::string& name) {
+  SliceReader reader;
+  reader.name_values(name);
+  for (const std::string& file : series.files) reader.add(file);
+  return reader.grid();
+}
+
+std::string text_of_others(std::size_t others) {
+  return others == 0 ? "" : fmt::format("{} files of the folder are none of DICOM", others);
+}
+
+void add_remark(const std::string& remark, GridFile& file) {
+  if (!remark.empty()) file.remark += (file.remark.empty() ? "" : "; ") + remark;
+}
+
+/// Throws Error, which begins with `name`, unless two series lie on one grid, to a millionth of its size.
+void check_same_places(const std::string& name, const GridFile& file, const GridFile& first) {
+  const auto same = [](double a, double b, double size) { return std::abs(a - b) <= 1e-6 * size; };
+  bool good = file.aslant.has_value() == first.aslant.has_value();
+  double size = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto &a = file.nodes[axis], &b = first.nodes[axis];
+    good = good && a.size() == b.size();
+    if (!good) break;
+    const double length = std::abs(b.back() - b.front());
+    size = std::max(size, length);
+    for (std::size_t i = 0; i < a.size(); ++i) good = good && same(a[i], b[i], length);
+  }
+  if (good && file.aslant) {
+    for (int i = 0; i < 3; ++i) {
+      good = good && same(file.aslant->origin[i], first.aslant->origin[i], size);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        good = good && same(file.aslant->directions[axis][i], first.aslant->directions[axis][i], 1);
+    }
+  }
+  if (!good)
+    fail("{}: expected series on one grid, found {} on another than {}", name, file.array_names(),
+         first.array_names());
 }
 
 }  // namespace
 
 GridFile read_dicom(const std::filesystem::path& path, const std::string& series) {
-  gdcm::Trace::WarningOff();
-  gdcm::Trace::ErrorOff();
-  gdcm::Trace::DebugOff();
-  SliceReader reader;
-  std::string remark;
-  if (!std::filesystem::is_directory(path)) {
-    reader.name_values(file_stem(path));
-    reader.add(path.string());
-  } else {
+  silence_gdcm();
+  if (std::filesystem::is_directory(path)) {
     std::size_t others = 0;
     const Series own = choose(path.string(), series_in(path, others), series);
-    if (others > 0) remark = fmt::format("{} files of the folder are none of DICOM", others);
-    reader.name_values(own.text.empty() ? file_stem(path) : own.text);
-    for (const std::string& file : own.files) reader.add(file);
+    GridFile file = read_series(own, own.text.empty() ? file_stem(path) : own.text);
+    add_remark(text_of_others(others), file);
+    return file;
   }
-  GridFile file = reader.grid();
-  if (!remark.empty()) file.remark += (file.remark.empty() ? "" : "; ") + remark;
-  return file;
+  SliceReader reader;
+  reader.name_values(file_stem(path));
+  reader.add(path.string());
+  return reader.grid();
+}
+
+GridFile read_dicom_series(const std::filesystem::path& path, const std::vector<std::string>& wanted) {
+  if (!std::filesystem::is_directory(path)) return read_dicom(path);
+  silence_gdcm();
+  std::size_t others = 0;
+  const std::map<std::string, Series> all = series_in(path, others);
+  if (all.size() == 1) return read_dicom(path);
+  std::vector<GridFile> read;
+  std::set<std::string> taken;
+  for (const std::string& name : wanted) {
+    const auto is_named = [&name](const auto& each) {
+      return each.first == name || visible_text(each.second.text) == name;
+    };
+    if (std::ranges::none_of(all, is_named) || !taken.insert(name).second) continue;
+    const bool by_uid = all.contains(name);
+    const auto found = std::ranges::find_if(all, is_named);
+    read.push_back(read_series(choose(path.string(), all, by_uid ? name : found->second.text), name));
+    if (read.size() > 1) check_same_places(path.string(), read.back(), read.front());
+  }
+  if (read.empty()) static_cast<void>(choose(path.string(), all, {}));
+  GridFile result = std::move(read.front());
+  for (std::size_t i = 1; i < read.size(); ++i) {
+    std::ranges::move(read[i].arrays, std::back_inserter(result.arrays));
+    add_remark(read[i].remark == result.remark ? "" : read[i].remark, result);
+  }
+  add_remark(text_of_others(others), result);
+  return result;
 }
 
 }  // namespace adamas::io

@@ -23,4 +23,9 @@ bool is_dicom_folder(const std::filesystem::path& path);
 /// file's name, if files differ in size or orientation or lack places, and if a folder has several series.
 GridFile read_dicom(const std::filesystem::path& path, const std::string& series = {});
 
+/// Reads series of a folder in this process, as arrays of one grid: those whose description or UID, which is
+/// the name of the array then, is among `wanted`. A file, or a folder of one series, is read as read_dicom()
+/// does. Throws Error as that, where no series of several is wanted, and where their grids differ.
+GridFile read_dicom_series(const std::filesystem::path& path, const std::vector<std::string>& wanted);
+
 }  // namespace adamas::io

@@ -44,6 +44,7 @@ InputFormat dicom_format() {
           .more_endings = ".dicom .ima",
           .shown_by = begins_as_dicom,
           .read_grid = read_grid_by_library,
+          .read_series = read_series_by_library,
           .find_volume = import_grid,
           .several_arrays = true,
           .is_folder = is_dicom_folder};

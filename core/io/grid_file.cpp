@@ -66,6 +66,8 @@ GridFile read_by_format(const std::filesystem::path& path, const GridReading& re
   if (format == nullptr || !format->gives_grids())
     fail("{}: expected data on a grid ({}) or bare samples (--dimensions, --type), found {}", path.string(),
          list_grid_endings("or"), name_unread_format(path));
+  if (format->read_series != nullptr && !reading.wanted.empty())
+    return format->read_series(path, reading.wanted);
   return format->read_grid != nullptr ? format->read_grid(path)
                                       : grid_of(format->read_header(path), path, reading);
 }
@@ -76,6 +78,7 @@ void show_names(std::vector<GridArray>& arrays, std::vector<std::string>& materi
   for (GridArray& array : arrays) {
     array.name = visible_text(array.name);
     for (std::string& name : array.component_names) name = visible_text(name);
+    for (std::string& name : array.label_names) name = visible_text(name);
   }
   for (std::string& name : material_names) name = visible_text(name);
 }
@@ -146,6 +149,12 @@ std::string names_of(const std::vector<GridArray>& arrays) {
 
 GridFile read_grid_by_library(const std::filesystem::path& path) {
   return receive_from_child<GridFile>(request_of(LibraryReader::kGrid, path));
+}
+
+GridFile read_series_by_library(const std::filesystem::path& path, const std::vector<std::string>& wanted) {
+  ReaderRequest request = request_of(LibraryReader::kGrid, path);
+  request.arrays = wanted;
+  return receive_from_child<GridFile>(request);
 }
 
 GridFile read_hdf5_by_library(const std::filesystem::path& path) {

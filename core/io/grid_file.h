@@ -45,6 +45,8 @@ struct GridArray {
       values;
   std::optional<WholeRuns> runs{};  ///< the numbers in another form, in place of `values` (GridReading)
   double slope = 1, intercept = 0;  ///< the scale of whole numbers: a value is slope * number + intercept
+  /// Names of its numbers as labels, from 0 on, before those of the file; usually empty.
+  std::vector<std::string> label_names{};
 
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   /// Whether its values are whole numbers.
@@ -104,7 +106,9 @@ struct GridReading {
   const RawVolume* raw = nullptr;  ///< what a file is whose extension belongs to no format
   /// The name of an array that labels are taken from, whose numbers are read as runs if they are whole.
   std::string labels = {};
-  bool only_array = false;      ///< whether it may have any name in a file of one array
+  bool only_array = false;  ///< whether it may have any name in a file of one array
+  /// Names of arrays that are wanted, or of files; they choose among the series of a folder.
+  std::vector<std::string> wanted = {};
   Vec3 stack_spacing{1, 1, 1};  ///< of a pattern of pictures
   Vec3 stack_origin{};
 };
@@ -119,6 +123,8 @@ GridFile read_grid_file(const std::filesystem::path& path, const GridReading& re
 /// Reads a file by the library for its format: .vti, .vtr, legacy .vtk, .tif(f), DICOM and the pictures of
 /// VTK. The library may crash on a corrupt file, so it runs in a child process (read_in_child).
 GridFile read_grid_by_library(const std::filesystem::path& path);
+/// Reads those series of a folder of DICOM that `wanted` names, as arrays of one grid (read_dicom_series).
+GridFile read_series_by_library(const std::filesystem::path& path, const std::vector<std::string>& wanted);
 /// Reads a file as read_grid_by_library does, but in this process. `series`: as for read_dicom().
 /// `time`: as for read_zarr().
 GridFile read_grid_in_process(const std::filesystem::path& path, const std::string& series = {},

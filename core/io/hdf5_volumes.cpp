@@ -12,8 +12,8 @@
 #include "core/base/error.h"
 #include "core/data/stored_type.h"
 #include "core/io/grid_file.h"
-#include "core/io/grid_numbers.h"
 #include "core/io/hdf5_handle.h"
+#include "core/io/hdf5_numbers.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
@@ -31,14 +31,6 @@ struct Listing {
   std::vector<std::string> names;
   bool too_deep;
 };
-
-/// The name that HDF5 has for a numeric type in memory.
-hid_t hdf5_memory_type(StoredType type) {
-  const std::array<hid_t, 10> types{H5T_NATIVE_INT8,  H5T_NATIVE_UINT8,  H5T_NATIVE_INT16, H5T_NATIVE_UINT16,
-                                    H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64,
-                                    H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE};
-  return types[static_cast<std::size_t>(type)];
-}
 
 /// The number of axes of a numeric data set; 0 if there is no such set, or its values are no numbers.
 int hdf5_axes(hid_t place, const char* name) {
@@ -85,13 +77,6 @@ std::string choose_hdf5_set(const std::string& name, hid_t file, const std::stri
   if (found.size() == kMostHdf5Listed) names += ", ...";
   if (found.size() > 1) fail("{}: expected the name of a data set, found {}", name, names);
   return found.front();
-}
-
-/// Throws Error, which begins with `name`, if the samples of a data set lie in other files.
-void check_hdf5_samples(const std::string& name, hid_t set) {
-  const Hdf5Handle layout(H5Dget_create_plist(set), H5Pclose);
-  if (!layout.good() || !hdf5_holds_values(layout.id()))
-    fail("{}: expected samples in the file itself, found them in others", name);
 }
 
 /// The spacing along x, y and z by the attribute "element_size_um"; 1 if there is none.
@@ -363,7 +348,6 @@ class GridSet {
     const std::size_t first = planar_ ? 1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis) sizes_[axis] = size[first + 2 - axis];
     check_size();
-    check_hdf5_samples(name_, set_.id());
   }
 
   [[nodiscard]] const Sizes& sizes() const { return sizes_; }
@@ -374,29 +358,14 @@ class GridSet {
     array.name = path_;
     array.type = stored_name(stored_);
     array.components = static_cast<int>(components_);
-    visit_stored_type(stored_, [&]<class Stored>(Stored) {
-      std::vector<Stored> numbers(static_cast<std::size_t>(count_));
-      if (H5Dread(set_.id(), hdf5_memory_type(stored_), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) < 0)
-        fail("{}: expected whole samples, found corrupt or missing ones", name_);
-      set_numbers(std::span<const Stored>(numbers), array);
-    });
+    read_hdf5_numbers(name_, set_.id(), stored_, count_, array);
     if (planar_) interleave(array);
     return array;
   }
 
  private:
   void check_size() {
-    constexpr auto kMost = std::uint64_t{1} << 40;
-    count_ = components_;
-    for (const std::uint64_t n : sizes_) {
-      if (n == 0 || count_ == 0 || n > kMost / count_)
-        fail("{}: expected samples, found no or too many", name_);
-      count_ *= n;
-    }
-    // Samples that were never written would all be read as the fill value.
-    const std::uint64_t stored = H5Dget_storage_size(set_.id());
-    if (stored < count_ * stored_bytes(stored_) / kGreatestExpansion || stored == 0)
-      fail("{}: expected {} samples, found {} bytes of them", name_, count_, stored);
+    count_ = count_hdf5_numbers(name_, set_.id(), stored_, sizes_, components_);
     if (components_ > std::numeric_limits<int>::max())
       fail("{}: expected fewer components, found {}", name_, components_);
   }

@@ -14,8 +14,10 @@
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/material_arrays.h"
+#include "core/io/text_array.h"
 #include "core/io/volume_reader.h"
 #include "core/io/volume_unpacking.h"
+#include "core/io/whole_pieces.h"
 #include "core/io/whole_runs.h"
 
 namespace adamas::io {
@@ -106,11 +108,6 @@ void read_numbers(VolumeReader& reader, GridArray& array) {
   array.intercept = 0;
 }
 
-VolumeReader open_whole(VolumeSource source) {
-  if (source.packed()) source = unpack_into(FileHandle::in_memory(), source, SilentProgress::instance());
-  return VolumeReader(std::move(source));
-}
-
 /// The array with one component for each time.
 ImageArray with_times(const ImageHeader& header, const ImageArray& array) {
   if (header.times == 1) return array;
@@ -129,42 +126,29 @@ GridArray read_array(const ImageArray& array, bool labels, std::string& remark) 
   result.type = stored_name(array.source.stored);
   result.centering = array.centering;
   result.components = static_cast<int>(array.source.components);
+  if (!array.segments.empty()) {
+    result.components = 1;
+    result.runs = read_segment_layers(array.source, array.planar, array.segments, remark);
+    if (!labels) result.expand();
+    return result;
+  }
   result.component_names = array.component_names;
   result.slope = array.source.slope;
   result.intercept = array.source.intercept;
   if (labels && !array.planar && array.source.components == 1 && !array.source.scaled())
     result.runs = read_whole_runs(array.source, remark);
   if (result.runs) return result;
-  VolumeReader reader = open_whole(array.source);
+  VolumeReader reader = open_in_memory(array.source);
   if (!reader.source().remark.empty()) remark = reader.source().remark;
   visit_stored_type(array.source.stored, [&]<class Stored>(Stored) { read_numbers<Stored>(reader, result); });
   if (array.planar) interleave(result);
   return result;
 }
 
-/// Reads texts, each of which ends with a zero byte.
-std::vector<std::string> read_texts(VolumeSource source) {
-  source.grid.dimensions = {measure_vtk_array(source), 1, 1};
-  if (source.grid.samples() == 0) return {};
-  if (source.grid.samples() > kLongestHeader)
-    fail("{}: expected material names of at most {} bytes, found {}", source.name, kLongestHeader,
-         source.grid.samples());
-  VolumeReader reader = open_whole(std::move(source));
-  std::string text(static_cast<std::size_t>(reader.source().values()), '\0');
-  reader.read_stored(0, std::as_writable_bytes(std::span(text)));
-  std::vector<std::string> texts;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\0', begin), text.size());
-    texts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return texts;
-}
-
 }  // namespace
 
 std::vector<double> read_doubles(const VolumeSource& source) {
-  VolumeReader reader = open_whole(source);
+  VolumeReader reader = open_in_memory(source);
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(source.values()));
   visit_stored_type(source.stored, [&]<class Stored>(Stored) {
@@ -211,7 +195,8 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
   source.grid.check(source.name);
   require_found(header, chosen);
   if (source.components != 1)
-    fail("{}: expected one value per sample, found {}", header.name, source.components);
+    fail("{}: expected one value per sample, found {}{}", header.name, source.components,
+         chosen.segments.empty() ? "" : " layers of segments");
   set_time(header, time, source);
   GridAxes axes = header.axes;
   for (std::size_t a = 0; a < 3; ++a) {

@@ -10,6 +10,7 @@
 
 #include "adamas/raw_volume.h"
 #include "core/io/grid_file.h"
+#include "core/io/segment_layers.h"
 #include "core/io/volume_source.h"
 
 namespace adamas::io {
@@ -25,6 +26,9 @@ struct ImageArray {
   /// Whether all values of a component lie together, one component behind the other.
   bool planar = false;
   std::vector<std::string> component_names = {};  ///< names of components, as in GridArray
+  /// The segments of components that are layers of labels, which are read as one component of labels; empty
+  /// of other components.
+  std::vector<LayerSegment> segments = {};
 };
 
 /// The centering of samples along an axis; empty if the header does not state it. If samples are values of
@@ -59,6 +63,8 @@ struct ImageHeader {
   /// set.
   std::optional<VolumeSource> material_names;
   std::map<std::int64_t, std::string> label_names{};  ///< names of labels by their values; usually empty
+  /// Colours of labels by their values: red, green and blue from 0 to 1; usually empty.
+  std::map<std::int64_t, std::array<double, 3>> label_colours{};
 };
 
 /// Makes the header of a file of bare samples.

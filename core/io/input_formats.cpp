@@ -23,6 +23,7 @@
   FORMAT(meta_image_format)          \
   FORMAT(nifti_format)               \
   FORMAT(hdf5_format)                \
+  FORMAT(dream3d_format)             \
   FORMAT(numpy_format)               \
   FORMAT(mrc_format)                 \
   FORMAT(dicom_format)               \

@@ -53,6 +53,10 @@ struct InputFormat {
   ImageHeader (*read_header)(const std::filesystem::path& path) = nullptr;
   /// Reads a grid if there is no such header, or if it is not enough; null: no grids of materials.
   GridFile (*read_grid)(const std::filesystem::path& path) = nullptr;
+  /// Reads those series of a folder that are named among `wanted`, as arrays of one grid; null if no folder
+  /// of the format has several.
+  GridFile (*read_series)(const std::filesystem::path& path,
+                          const std::vector<std::string>& wanted) = nullptr;
   /// Finds the samples of a volume if there is no header; null: no volumes.
   VolumeSource (*find_volume)(const std::filesystem::path& path, const VolumeOptions& options,
                               Progress& progress) = nullptr;

@@ -185,7 +185,7 @@ namespace {
 
 std::string coordinates(const Vec3& p) { return fmt::format("{} {} {}", p.x, p.y, p.z); }
 
-void write_vtp(const std::filesystem::path& path, InterfaceMesh&& mesh) {
+void write_vtp(const std::filesystem::path& path, InterfaceMesh&& mesh, const NamedColours& colours) {
   UnstructuredMesh polygons;
   polygons.kind = CellKind::kPolygons;
   polygons.points = std::move(mesh.points);
@@ -202,6 +202,7 @@ void write_vtp(const std::filesystem::path& path, InterfaceMesh&& mesh) {
   release_memory(mesh.triangles);
   polygons.cell_arrays = {{"front", 1, std::move(front)}, {"back", 1, std::move(back)}};
   polygons.field_arrays = {{"material_names", 1, std::vector<std::string>(mesh.materials)}};
+  add_colours(mesh.materials, colours, polygons.field_arrays);
   write_unstructured_mesh(path, std::move(polygons));
 }
 
@@ -308,9 +309,10 @@ void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh
   write_interface_mesh(path, InterfaceMesh(mesh));
 }
 
-void write_interface_mesh(const std::filesystem::path& path, InterfaceMesh&& mesh) {
+void write_interface_mesh(const std::filesystem::path& path, InterfaceMesh&& mesh,
+                          const NamedColours& colours) {
   const std::string extension = file_extension(path);
-  if (extension == ".vtp") return write_vtp(path, std::move(mesh));
+  if (extension == ".vtp") return write_vtp(path, std::move(mesh), colours);
   using Writer = void (*)(OutputStream&, const InterfaceMesh&);
   const std::map<std::string, Writer> writers{{".ply", write_ply},      {".obj", write_obj},
                                               {".off", write_off},      {".stl", write_stl},

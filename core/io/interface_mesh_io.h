@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/data/interface_mesh.h"
+#include "core/io/named_colours.h"
 
 namespace adamas::io {
 
@@ -40,6 +41,8 @@ void weld(InterfaceMesh& mesh);
 /// where a reader could not tell the sides apart). Throws Error if the file cannot be written in full.
 void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh& mesh);
 /// Writes a mesh, whose arrays are freed as soon as they are converted.
-void write_interface_mesh(const std::filesystem::path& path, InterfaceMesh&& mesh);
+/// `colours`: those of materials, which .vtp has (add_colours()).
+void write_interface_mesh(const std::filesystem::path& path, InterfaceMesh&& mesh,
+                          const NamedColours& colours = {});
 
 }  // namespace adamas::io

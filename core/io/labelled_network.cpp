@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "adamas/text.h"
@@ -119,25 +120,37 @@ LabelledNetwork parse_labelled_network(std::string_view text, const std::string&
 
 namespace {
 
-/// The name in a line of ITK-SNAP's table of labels, behind the label: three numbers of a colour, three that
-/// say how it is shown, and the name in quotes. Empty for other lines.
-std::string_view table_name(std::string_view rest) {
+/// What a line says of a label.
+struct RegionLine {
+  std::string_view name;
+  std::optional<std::array<double, 3>> colour;
+};
+
+/// The line of a table of ITK-SNAP, behind its label: three numbers of a colour up to 255, the opacity, two
+/// that say how the label is shown, and the name in quotes. Its name is empty for other lines.
+RegionLine table_line(std::string_view rest) {
   const std::size_t quote = rest.find('"');
   if (quote == std::string_view::npos || rest.back() != '"' || rest.size() < quote + 2) return {};
-  std::string_view numbers = rest.substr(0, quote);
+  std::string_view text = rest.substr(0, quote);
+  std::array<double, 6> numbers{};
   std::size_t count = 0;
-  for (numbers = trimmed(numbers, kSpaces); !numbers.empty(); ++count) {
-    const std::size_t end = std::min(numbers.find_first_of(kSpaces), numbers.size());
-    if (numbers.substr(0, end).find_first_not_of("0123456789.-+e") != std::string_view::npos) return {};
-    numbers = trimmed(numbers.substr(end), kSpaces);
+  for (text = trimmed(text, kSpaces); !text.empty(); ++count) {
+    const std::size_t end = std::min(text.find_first_of(kSpaces), text.size());
+    if (text.substr(0, end).find_first_not_of("0123456789.-+e") != std::string_view::npos) return {};
+    if (count < numbers.size()) std::from_chars(text.data(), text.data() + end, numbers[count]);
+    text = trimmed(text.substr(end), kSpaces);
   }
-  return count == 6 ? trimmed(rest.substr(quote + 1, rest.size() - quote - 2), kSpaces) : std::string_view();
+  if (count != numbers.size()) return {};
+  RegionLine line{trimmed(rest.substr(quote + 1, rest.size() - quote - 2), kSpaces), {}};
+  const auto in_range = [](double part) { return part >= 0 && part <= 255; };
+  if (numbers[3] > 0 && std::all_of(numbers.begin(), numbers.begin() + 3, in_range))
+    line.colour = {numbers[0] / 255, numbers[1] / 255, numbers[2] / 255};
+  return line;
 }
 
-}  // namespace
-
-std::map<std::int64_t, std::string> parse_region_names(std::string_view text, const std::string& name) {
-  std::map<std::int64_t, std::string> names;
+/// Reads all lines of regions by their labels.
+std::map<std::int64_t, RegionLine> parse_regions(std::string_view text, const std::string& name) {
+  std::map<std::int64_t, RegionLine> regions;
   std::size_t number = 0;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -151,16 +164,34 @@ std::map<std::int64_t, std::string> parse_region_names(std::string_view text, co
     std::string_view label_name = line.substr(static_cast<std::size_t>(rest - line.data()));
     const bool separated = !label_name.empty() && is_space(label_name[0]);
     label_name = trimmed(label_name, kSpaces);
-    if (const std::string_view quoted = table_name(label_name); !quoted.empty()) label_name = quoted;
-    if (code != std::errc() || !separated || label_name.empty()) {
+    RegionLine region = table_line(label_name);
+    if (region.name.empty()) region = {label_name, {}};
+    if (code != std::errc() || !separated || region.name.empty()) {
       fail("{}: line {}: expected a label and its region's name, found '{}'", name, number,
            printable(line, 20));
     }
-    if (!names.try_emplace(label, label_name).second) {
+    if (!regions.try_emplace(label, region).second) {
       fail("{}: line {}: expected one name for each label, found a second for {}", name, number, label);
     }
   }
+  return regions;
+}
+
+}  // namespace
+
+std::map<std::int64_t, std::string> parse_region_names(std::string_view text, const std::string& name) {
+  std::map<std::int64_t, std::string> names;
+  for (const auto& [label, region] : parse_regions(text, name)) names.emplace(label, region.name);
   return names;
+}
+
+std::map<std::int64_t, std::array<double, 3>> parse_region_colours(std::string_view text,
+                                                                   const std::string& name) {
+  std::map<std::int64_t, std::array<double, 3>> colours;
+  for (const auto& [label, region] : parse_regions(text, name)) {
+    if (region.colour) colours.emplace(label, *region.colour);
+  }
+  return colours;
 }
 
 namespace {

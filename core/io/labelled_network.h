@@ -27,6 +27,11 @@ LabelledNetwork parse_labelled_network(std::string_view text, const std::string&
 /// in quotes behind six numbers; blank lines and those that begin with '#' or '(' are skipped.
 std::map<std::int64_t, std::string> parse_region_names(std::string_view text, const std::string& name);
 
+/// Reads the colours of a table of ITK-SNAP from the same text: red, green and blue from 0 to 1. Labels whose
+/// opacity is 0, and those of other lines, have none.
+std::map<std::int64_t, std::array<double, 3>> parse_region_colours(std::string_view text,
+                                                                   const std::string& name);
+
 /// Whether the first label of a triangle is the region that its right-hand normal points to. Sources differ,
 /// so the data decide: the closed regions, or all if none is closed, have positive volumes except for the
 /// unbounded one. If two regions leave it open, the one with the smaller label is taken to be unbounded.

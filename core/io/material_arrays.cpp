@@ -208,6 +208,13 @@ ChosenMaterials MaterialArrays::take_materials() {
 
 /// Suggests what the user may have meant.
 void MaterialArrays::fail_without_materials() const {
+  const auto labels = std::ranges::find_if(
+      arrays_, [](const GridArray& array) { return array.integral() && array.components == 1; });
+  if (labels != arrays_.end() && arrays_.size() > 1)
+    fail(
+        "{}: expected arrays named \"Volume Fraction for ...\", found {}: pass --labels {} if the values of "
+        "that array name materials, or name others by --labels or --fraction NAME=ARRAY",
+        source_, names_of(arrays_), as_argument(labels->name));
   for (const GridArray& array : arrays_) {
     if (array.components < 2) continue;
     fail(
@@ -336,8 +343,9 @@ void MaterialArrays::set_labels(GridArray array) {
     fail("{}: expected labels or volume fractions, found both", source_);
   require_scalar(array);
   chosen_.centering = array.centering;
-  chosen_.labels =
-      name_labels(source_, std::move(array), {material_names_, options_.label_names}, options_.note);
+  const std::vector<std::string> own = std::move(array.label_names);
+  const LabelNames names{own.empty() ? material_names_ : own, options_.label_names};
+  chosen_.labels = name_labels(source_, std::move(array), names, options_.note);
   for (const std::string& name : chosen_.labels->names) add_material(name);
 }
 

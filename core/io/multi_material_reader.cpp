@@ -94,9 +94,14 @@ class Reader {
   GridFile read_file(const std::filesystem::path& path) {
     raw_used_ = raw_used_ || find_format_by_name(path) == nullptr;
     const bool asked = !options_.labels.empty();
+    std::vector<std::string> wanted{options_.labels, options_.fraction_array};
+    for (const auto& fraction : options_.fractions) wanted.push_back(fraction.second);
+    for (const auto& field : options_.fields) wanted.push_back(field.second);
+    std::erase(wanted, "");
     return read_grid_file(path, {.raw = raw_ ? &*raw_ : nullptr,
                                  .labels = asked ? options_.labels : kWrittenLabels,
                                  .only_array = asked,
+                                 .wanted = wanted,
                                  .stack_spacing = options_.stack_spacing.value_or(Vec3{1, 1, 1}),
                                  .stack_origin = options_.stack_origin.value_or(Vec3{})});
   }

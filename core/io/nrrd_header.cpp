@@ -214,13 +214,18 @@ class Parser {
     if (places_.sizes.empty()) fail("{}: expected a header with sizes, found none", name_);
     if (!has_encoding_) fail("{}: expected a header with encoding, found none", name_);
     places_.apply(name_, header_);
-    for (const auto& [number, segment] : segments_) {
-      if (!segment.name.empty()) header_.segments.emplace(segment.label.value_or(number + 1), segment.name);
-    }
+    set_segments();
     return header_;
   }
 
  private:
+  struct Segment {
+    std::string name;
+    std::optional<std::int64_t> label;
+    std::optional<std::uint32_t> layer;
+    std::optional<std::array<double, 3>> colour;
+  };
+
   std::optional<std::string_view> next_line() {
     if (at_ >= text_.size()) return {};
     const std::size_t end = text_.find('\n', at_);
@@ -235,7 +240,42 @@ class Parser {
     fail("{}: line {}: expected {}, found '{}'", name_, line_, expected, printable(found, 40));
   }
 
-  /// Takes the names and the labels of segments, "Segment2_Name" and "Segment2_LabelValue", of other keys.
+  void set_segments() {
+    for (const auto& [number, segment] : segments_) {
+      if (segment.layer.value_or(0) >= header_.components)
+        fail("{}: Segment{}_Layer: expected a layer from 0 to {}, found {}", name_, number,
+             header_.components - 1, *segment.layer);
+    }
+    if (header_.components > 1) return set_layers();
+    for (const auto& [number, segment] : segments_) add_segment(segment.label.value_or(number + 1), segment);
+  }
+
+  void add_segment(std::int64_t label, const Segment& segment) {
+    if (!segment.name.empty()) header_.segments.emplace(label, segment.name);
+    if (segment.colour) header_.colours.emplace(label, *segment.colour);
+  }
+
+  /// Sets the segments of several layers. In older files no segment names its layer or its number: each has a
+  /// layer of its own, where it is 1.
+  void set_layers() {
+    const auto has_layer = [](const auto& segment) { return segment.second.layer.has_value(); };
+    const bool older = std::ranges::none_of(segments_, has_layer);
+    if (older && !segments_.empty() && segments_.size() != header_.components)
+      fail("{}: expected a layer for each of {} segments, or SegmentN_Layer, found {} layers", name_,
+           segments_.size(), header_.components);
+    if (segments_.size() > kMostLayerSegments)
+      fail("{}: expected at most {} segments, found {}", name_, kMostLayerSegments, segments_.size());
+    for (auto& [number, segment] : segments_) {
+      if (!older && !segment.layer)
+        fail("{}: expected Segment{}_Layer beside those of other segments, found none", name_, number);
+      const std::size_t place = header_.layered.size();
+      if (segment.name.empty()) segment.name = fmt::format("segment {}", number);
+      add_segment(static_cast<std::int64_t>(place) + 1, segment);
+      header_.layered.push_back({segment.name, segment.layer.value_or(place), segment.label.value_or(1)});
+    }
+  }
+
+  /// Takes the names, labels and layers of segments, as "Segment2_Name", of other keys.
   void read_key(std::string_view key, std::string_view value) {
     constexpr std::string_view kSegment = "Segment";
     const std::size_t end = key.find('_');
@@ -244,7 +284,27 @@ class Parser {
     if (!number) return;
     const std::string_view what = key.substr(end + 1);
     if (what == "Name") segments_[*number].name = value;
-    if (what == "LabelValue") segments_[*number].label = nrrd_number<std::int64_t>(value);
+    if (what == "LabelValue") segments_[*number].label = segment_number<std::int64_t>(value);
+    if (what == "Layer") segments_[*number].layer = segment_number<std::uint32_t>(value);
+    if (what == "Color") segments_[*number].colour = segment_colour(value);
+  }
+
+  [[nodiscard]] std::array<double, 3> segment_colour(std::string_view text) const {
+    const Words words = split(text, kBlanks);
+    std::array<double, 3> colour{};
+    for (std::size_t i = 0; i < colour.size(); ++i) {
+      const auto part = words.size() == colour.size() ? nrrd_number<double>(words[i]) : std::nullopt;
+      if (!part || !(*part >= 0 && *part <= 1)) fail_field("three numbers of a colour from 0 to 1", text);
+      colour[i] = *part;
+    }
+    return colour;
+  }
+
+  template <class T>
+  T segment_number(std::string_view text) const {
+    const auto number = nrrd_number<T>(text);
+    if (!number) fail_field("a whole number of a segment", text);
+    return *number;
   }
 
   void read_line(std::string_view line) {
@@ -362,10 +422,6 @@ class Parser {
   std::size_t at_ = 0, line_ = 0;
   NrrdHeader header_;
   bool has_encoding_ = false;
-  struct Segment {
-    std::string name;
-    std::optional<std::int64_t> label;
-  };
   std::map<std::uint16_t, Segment> segments_;
   NrrdAxisFields places_;
 };
@@ -415,15 +471,14 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   source.components = header.components;
   source.big_endian = header.big_endian;
   source.grid.dimensions = image.dimensions;
-  if (source.components == 1) image.label_names = header.segments;
-  if (source.components > 1 && !header.segments.empty())
-    source.remark = "segments lie in several layers, which are components and no labels";
+  image.label_names = header.segments;
+  image.label_colours = header.colours;
   // Segmentations are taken for labels without being named, as those that adamas writes.
-  const bool labelled = !header.segments.empty() && source.components == 1;
-  image.arrays.push_back({.name = labelled ? kWrittenLabels : "",
+  image.arrays.push_back({.name = header.segments.empty() ? "" : kWrittenLabels,
                           .centering = Centering::kPoints,
                           .source = std::move(source),
-                          .planar = header.planar});
+                          .planar = header.planar,
+                          .segments = header.layered});
   return image;
 }
 

@@ -8,9 +8,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/data/stored_type.h"
 #include "core/io/image_header.h"
+#include "core/io/segment_layers.h"
 
 namespace adamas::io {
 
@@ -30,8 +32,13 @@ struct NrrdHeader {
   std::size_t line_skip = 0;
   std::int64_t byte_skip = 0;    ///< -1: the data are the file's last bytes
   std::size_t header_bytes = 0;  ///< size of the header with its empty line
-  /// The names of the segments of a segmentation of 3D Slicer (.seg.nrrd), by the values of their labels.
+  /// The names of the segments of a segmentation of 3D Slicer (.seg.nrrd), by their labels.
   std::map<std::int64_t, std::string> segments{};
+  /// The colours of these, as ImageHeader has them.
+  std::map<std::int64_t, std::array<double, 3>> colours{};
+  /// The segments themselves if they lie in several layers, which are the components; labels are then their
+  /// places in this list, from 1 on.
+  std::vector<LayerSegment> layered{};
 };
 
 /// Reads a header. Throws Error with `name` and the line unless the text begins with a complete header of

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/io/array_names.h"
 #include "core/io/dicom_reader.h"
+#include "core/io/dream3d_reader.h"
 #include "core/io/grid_axes.h"
 #include "core/io/grid_file.h"
 #include "core/io/input_formats.h"
@@ -24,14 +25,15 @@ GridFile read_grid_in_process(const std::filesystem::path& path, const std::stri
   const InputFormat* format = find_input_format(path);
   if (format != nullptr && format->name == kDicom) return read_dicom(path, series);
   if (format != nullptr && format->name == kZarr) return read_zarr(path, time);
+  if (format != nullptr && format->name == kDream3d) return read_dream3d(path);
   return read_grid_with_vtk(path);
 }
 
 void send_grid(const ReaderRequest& request, ByteSink& sink) {
   const std::filesystem::path path = request.paths.front();
-  sink.put(request.reader == LibraryReader::kHdf5Grid
-               ? read_hdf5_grid(path)
-               : read_grid_in_process(path, request.array, request.time));
+  if (request.reader == LibraryReader::kHdf5Grid) return sink.put(read_hdf5_grid(path));
+  sink.put(request.arrays.empty() ? read_grid_in_process(path, request.array, request.time)
+                                  : read_dicom_series(path, request.arrays));
 }
 
 namespace {

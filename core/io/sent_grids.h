@@ -12,7 +12,8 @@ inline constexpr auto kSentMembers<GridArray> = std::tuple{&GridArray::name,
                                                            &GridArray::centering,
                                                            &GridArray::components,
                                                            &GridArray::component_names,
-                                                           &GridArray::values};
+                                                           &GridArray::values,
+                                                           &GridArray::label_names};
 template <>
 inline constexpr auto kSentMembers<GridFile> =
     std::tuple{&GridFile::kind,  &GridFile::nodes,  &GridFile::arrays, &GridFile::material_names,

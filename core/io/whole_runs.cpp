@@ -2,23 +2,16 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
-#include <numeric>
 #include <span>
-#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "core/io/volume_reader.h"
-#include "core/io/volume_unpacking.h"
+#include "core/io/whole_pieces.h"
 
 namespace adamas::io {
 
 namespace {
-
-/// The number of bytes that are read together.
-constexpr std::size_t kPiece = std::size_t{1} << 20;
 
 /// Returns the first index from `begin` on whose number is another one, or the count of numbers.
 template <class Number>
@@ -78,38 +71,6 @@ class RunMaker {
   Number last_ = 0;
 };
 
-/// Makes numbers of stored bytes that arrive in pieces.
-template <class Number, class Take>
-class NumberPieces {
- public:
-  NumberPieces(bool turned, Take take) : turned_(turned), take_(std::move(take)) {}
-
-  void put(std::span<const std::byte> bytes) {
-    const std::size_t before = rest_.size(), count = (before + bytes.size()) / sizeof(Number),
-                      whole = count * sizeof(Number);
-    rest_.insert(rest_.end(), bytes.begin(), bytes.end());
-    numbers_.resize(count);
-    if (count > 0) std::memcpy(numbers_.data(), rest_.data(), whole);
-    rest_.erase(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(whole));
-    if (turned_) turn();
-    take_(std::span<const Number>(numbers_));
-  }
-
- private:
-  void turn() {
-    const std::span<std::byte> bytes = std::as_writable_bytes(std::span(numbers_));
-    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Number)) {
-      const std::span<std::byte> number = bytes.subspan(at, sizeof(Number));
-      std::reverse(number.begin(), number.end());
-    }
-  }
-
-  bool turned_;
-  Take take_;
-  std::vector<std::byte> rest_;  ///< bytes of a number that is not complete
-  std::vector<Number> numbers_;
-};
-
 /// Thrown where too many numbers differ, which ends the unpacking.
 struct TooManyNumbers {};
 
@@ -121,24 +82,7 @@ std::optional<WholeRuns> read_runs_of(const VolumeSource& source, std::string& r
     if (!runs.take(numbers)) throw TooManyNumbers();
   };
   try {
-    if (source.packed()) {
-      // Numbers in text come in this machine's byte order.
-      const bool turned = source.big_endian && source.coding != SamplePacking::kText;
-      NumberPieces<Number, decltype(take)> pieces(turned, take);
-      const VolumeSource unpacked = unpack_pieces(
-          source, [&pieces](std::span<const std::byte> bytes) { pieces.put(bytes); },
-          SilentProgress::instance());
-      if (!unpacked.remark.empty()) remark = unpacked.remark;
-    } else {
-      VolumeReader reader(source);
-      if (!reader.source().remark.empty()) remark = reader.source().remark;
-      std::vector<Number> piece;
-      for (std::uint64_t first = 0; first < source.values(); first += piece.size()) {
-        piece.resize(std::min<std::uint64_t>(kPiece / sizeof(Number), source.values() - first));
-        reader.read_stored(first, std::as_writable_bytes(std::span(piece)));
-        take(piece);
-      }
-    }
+    if (const std::string found = for_each_piece<Number>(source, take); !found.empty()) remark = found;
   } catch (const TooManyNumbers&) {
     return {};
   }
@@ -150,10 +94,8 @@ std::optional<WholeRuns> read_runs_of(const VolumeSource& source, std::string& r
 std::optional<WholeRuns> read_whole_runs(const VolumeSource& source, std::string& remark) {
   std::optional<WholeRuns> result;
   if (source.grid.samples() == 0) return result;
-  visit_stored_type(source.stored, [&]<class Stored>(Stored) {
-    if constexpr (std::is_integral_v<Stored> && !std::is_same_v<Stored, std::uint64_t>)
-      result = read_runs_of<Stored>(source, remark);
-  });
+  visit_whole_type(source.stored,
+                   [&]<class Number>(Number) { result = read_runs_of<Number>(source, remark); });
   return result;
 }
 

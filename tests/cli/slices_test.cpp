@@ -21,6 +21,42 @@ TEST_F(Slices, SlicesOfAllModes) {
                      {"--original"});
 }
 
+TEST_F(Slices, MaterialsHaveTheColoursOfTheFilesUpToTheMeshAndBack) {
+  std::string labels;
+  for (int site = 0; site < 8 * 8 * 8; ++site) labels += static_cast<char>(site % 8 / 3);
+  write("parts.seg.nrrd",
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n"
+        "Segment0_Name:=bone\nSegment0_LabelValue:=1\nSegment0_Color:=0.5 0.25 0.75\n"
+        "Segment1_Name:=skin\nSegment1_LabelValue:=2\n\n" +
+            labels);
+  write("table.txt", "1 255 0 51 1 1 1 \"marrow\"\n2 0 102 0 1 1 1 \"fat\"\n");
+  const auto slice = [this](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "slice");
+    for (const std::string more : {"--plane", "z=3.7", "--no-interfaces", "--quiet", "-o", "s.svg"})
+      arguments.push_back(more);
+    run_well(arguments);
+    return read("s.svg");
+  };
+  const auto has = [](const std::string& picture, const std::string& colour) {
+    return picture.find("rgb(" + colour + ")") != std::string::npos;
+  };
+  const std::string bone = "50%,25%,75%", marrow = "100%,0%,20%", fat = "0%,40%,0%";
+  EXPECT_TRUE(has(slice({"parts.seg.nrrd", "--cells"}), bone));
+  run_well({"resample", "parts.seg.nrrd", "--cells", "--interface-error", "20%", "-o", "m.vtu",
+            "--interfaces-out", "i.vtp"});
+  run_well({"reconstruct", "parts.seg.nrrd", "--cells", "-o", "r.vtp"});
+  for (const std::string file : {"m.vtu", "i.vtp", "r.vtp"}) EXPECT_TRUE(has(slice({file}), bone)) << file;
+  // The table has other names, and comes before the file's colours; a label of opacity 0 has none.
+  const std::string named =
+      slice({"parts.seg.nrrd", "--cells", "--labels", "labels", "--region-names", "table.txt"});
+  EXPECT_TRUE(has(named, marrow));
+  EXPECT_FALSE(has(named, bone));
+  EXPECT_TRUE(has(named, fat));
+  write("clear.txt", "1 255 0 51 0 1 1 \"marrow\"\n");
+  EXPECT_FALSE(
+      has(slice({"parts.seg.nrrd", "--cells", "--labels", "labels", "--region-names", "clear.txt"}), marrow));
+}
+
 TEST_F(Slices, APanelAloneHasNoTitleThatTellsNothing) {
   make_scene("sphere", 8);
   run_well({"slice", "scene.vtr", "--plane", "y=0.5", "-o", "s.svg"});

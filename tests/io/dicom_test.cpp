@@ -226,6 +226,67 @@ TEST(Dicom, ASeriesIsChosenByItsDescription) {
   EXPECT_EQ(reinterpret_cast<const std::int16_t*>(chest.samples.data())[12], pixels_of(3)[0]);
 }
 
+/// Writes two slices of a series into the folder ct.
+void write_two(const Scratch& folder, const std::string& series, const std::string& text,
+               const std::vector<std::int16_t>& pixels, double distance = 1) {
+  for (int k = 0; k < 2; ++k) {
+    SliceFile slice{{0, 0, distance * k}, pixels};
+    slice.series = series;
+    slice.text = text;
+    slice.write(folder / fmt::format("ct/{}-{}", series, k));
+  }
+}
+
+TEST(Dicom, MaterialsAreTakenOfTheSeriesThatAreNamed) {
+  const Scratch folder;
+  std::filesystem::create_directory(folder / "ct");
+  std::vector<std::int16_t> rising, falling, organs;
+  for (int i = 0; i < 12; ++i) {
+    rising.push_back(static_cast<std::int16_t>(10 * i));
+    falling.push_back(static_cast<std::int16_t>(110 - 10 * i));
+    organs.push_back(static_cast<std::int16_t>(i / 6 + 3));
+  }
+  write_two(folder, "1.2.3", "rising part", rising);
+  write_two(folder, "1.2.4", "falling part", falling);
+  write_two(folder, "1.2.5", "organs", organs);
+  for (const std::string name : {"organs", "1.2.5"}) {
+    MaterialDataOptions options;
+    options.labels = name;
+    const MultiMaterialData data = read_multi_material_data(folder / "ct", options);
+    EXPECT_EQ(std::vector<std::string>(data.materials.begin(), data.materials.end()),
+              (std::vector<std::string>{"3", "4"}));
+    for (std::size_t site = 0; site < 24; ++site) EXPECT_EQ(std::as_const(data.labels)[site], site % 12 / 6);
+  }
+  MaterialDataOptions options;
+  options.fractions = {{"a", "rising part"}, {"b", "1.2.4"}};
+  options.fraction_scale = 110;
+  options.fields = {{"organ", "organs"}};
+  const MultiMaterialData data = read_multi_material_data(folder / "ct", options);
+  ASSERT_EQ(data.fractions.size(), 2u);
+  for (std::size_t site = 0; site < 24; ++site) {
+    EXPECT_FLOAT_EQ(data.fractions[MaterialId(0)][site], static_cast<float>(site % 12) / 11);
+    EXPECT_FLOAT_EQ(data.fractions[MaterialId(1)][site], static_cast<float>(11 - site % 12) / 11);
+  }
+  ASSERT_EQ(data.fields.size(), 1u);
+  EXPECT_EQ(data.fields[0].name, "organ");
+  // Where none is named, the message tells how to choose.
+  const auto message = [&](const MaterialDataOptions& how) {
+    return error_of([&] { read_multi_material_data(folder / "ct", how); });
+  };
+  EXPECT_TRUE(says(message({}), "--labels or --fraction of materials), found 'rising part' (2 files)"));
+  options = {};
+  options.labels = "bones";
+  EXPECT_TRUE(says(message(options), "found 'rising part' (2 files), 'falling part' (2 files), 'organs'"));
+  write_two(folder, "1.2.4", "falling part", falling, 2);
+  options = {};
+  options.fractions = {{"a", "rising part"}, {"b", "falling part"}};
+  EXPECT_TRUE(says(message(options), "expected series on one grid, found 'falling part' on another"));
+  write_two(folder, "1.2.4", "organs", falling);
+  options = {};
+  options.labels = "organs";
+  EXPECT_TRUE(says(message(options), "expected one series of DICOM 'organs'"));
+}
+
 /// A segmentation of two segments in a volume of 8 x 2 x 3 voxels; frames lie in no order.
 std::string segmentation(bool fractional) {
   const std::string storage = "1.2.840.10008.5.1.4.1.1.66.4";

@@ -53,6 +53,35 @@ void Hdf5File::add(const std::string& name, const std::vector<std::uint64_t>& si
   H5Pclose(links);
 }
 
+void Hdf5File::add_texts(const std::string& name, const std::vector<std::string>& texts, bool variable) {
+  constexpr std::size_t kLength = 40;
+  const hid_t links = H5Pcreate(H5P_LINK_CREATE), type = H5Tcopy(H5T_C_S1);
+  H5Pset_create_intermediate_group(links, 1);
+  H5Tset_size(type, variable ? H5T_VARIABLE : kLength);
+  const hsize_t count = texts.size();
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t set = H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT);
+  std::vector<const char*> pointers;
+  std::string padded;
+  for (const std::string& text : texts) {
+    pointers.push_back(text.c_str());
+    padded += text + std::string(kLength - text.size(), '\0');
+  }
+  const void* values = variable ? static_cast<const void*>(pointers.data()) : padded.data();
+  H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+  H5Dclose(set);
+  H5Sclose(space);
+  H5Tclose(type);
+  H5Pclose(links);
+}
+
+void Hdf5File::add_group(const std::string& name) {
+  const hid_t links = H5Pcreate(H5P_LINK_CREATE);
+  H5Pset_create_intermediate_group(links, 1);
+  H5Gclose(H5Gcreate2(file_, name.c_str(), links, H5P_DEFAULT, H5P_DEFAULT));
+  H5Pclose(links);
+}
+
 void Hdf5File::add_numbers(const std::string& name, const char* attribute_name,
                            const std::vector<double>& numbers) {
   const hsize_t count = numbers.size();

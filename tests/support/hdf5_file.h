@@ -21,8 +21,12 @@ class Hdf5File {
   /// Without `values` no data are written. The layout is contiguous where `chunk` is 0.
   void add(const std::string& name, const std::vector<std::uint64_t>& size, StoredType type,
            const void* values, std::uint64_t chunk = 0, bool big_endian = false);
+  /// Adds a data set of texts, of variable length or padded by zeros.
+  void add_texts(const std::string& name, const std::vector<std::string>& texts, bool variable);
   /// Adds an attribute to a data set or a group.
   void add_numbers(const std::string& name, const char* attribute, const std::vector<double>& numbers);
+  /// Adds a group, with those that it is in.
+  void add_group(const std::string& name);
   /// Adds an attribute of a text of fixed length.
   void add_text(const std::string& name, const char* attribute, const std::string& text);
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -42,6 +44,12 @@ constexpr double kLabelRow = 8, kLabelRun = 24;
 /// materials fill.
 constexpr double kLabelPlace = 950, kFractionPlace = 700;
 
+/// What a mesh of cells takes while it is read and its faces are joined: at least, for each cell and point;
+/// and for all it has, faces and interfaces as well.
+constexpr double kLeastMeshCell = 150, kMeshCell = 100, kMeshFace = 60, kMeshPoint = 60;
+/// A cell of a mesh with several materials while interfaces are reconstructed, and any cell of fractions.
+constexpr double kMeshMixedCell = 14500, kMeshFractionCell = 20;
+
 /// What is read of files, as far as headers tell.
 struct HeaderFacts {
   double cells = 0;    ///< sites of the grid in the file
@@ -66,12 +74,13 @@ std::optional<std::array<double, 6>> extent_of(std::string_view text, std::strin
 }
 
 /// Whether an array is read as runs if labels are taken from it.
-bool may_be_runs(const VolumeSource& source) {
+bool may_be_runs(const ImageArray& array) {
   bool whole = false;
-  visit_stored_type(source.stored, [&whole]<class Stored>(Stored) {
+  visit_stored_type(array.source.stored, [&whole]<class Stored>(Stored) {
     whole = std::is_integral_v<Stored> && !std::is_same_v<Stored, std::uint64_t>;
   });
-  return whole && source.components == 1 && !source.scaled();
+  const bool labels = array.source.components == 1 || (!array.segments.empty() && !array.planar);
+  return whole && labels && !array.source.scaled();
 }
 
 /// Returns what the header of a file says; none where it is not known without reading the file. `labels`: the
@@ -94,7 +103,7 @@ std::optional<HeaderFacts> facts_of(const std::filesystem::path& path,
     facts.rows = facts.cells / static_cast<double>(std::max<std::uint64_t>(header.dimensions[0], 1));
     for (const ImageArray& array : header.arrays) {
       const bool of_labels = labels && (header.arrays.size() == 1 || array.name == *labels);
-      if (!of_labels || header.times > 1 || !may_be_runs(array.source))
+      if (!of_labels || header.times > 1 || !may_be_runs(array))
         facts.numbers += facts.cells * static_cast<double>(array.source.components);
     }
     return facts;
@@ -204,13 +213,99 @@ double bytes_of_fractions(const MultiMaterialData& data) {
          static_cast<double>(count_places(data)) * kFractionPlace;
 }
 
-void check_need(const InputOptions& options, const std::string& source, double cells, double bytes,
-                std::string_view how) {
+std::string cells_text(double cells) { return fmt::format("{:.0f} cells", cells); }
+
+/// `part`: what is said of choosing a part, for data that allow it.
+void check_need(const InputOptions& options, const std::string& source, const std::string& found,
+                double bytes, std::string_view how, std::string_view part = "a part by --region, ") {
   if (bytes <= static_cast<double>(options.memory)) return;
   fail(
-      "{}: expected data that take at most {} of memory, found {:.0f} cells, which take {} {}: choose a part "
-      "by --region, coarser data, or another limit by --memory",
-      source, bytes_text(static_cast<double>(options.memory)), cells, how, bytes_text(bytes));
+      "{}: expected data that take at most {} of memory, found {}, which take {} {}: choose "
+      "{}coarser data, or another limit by --memory",
+      source, bytes_text(static_cast<double>(options.memory)), found, how, bytes_text(bytes), part);
+}
+
+/// Estimates what fields take.
+double bytes_of_fields(const auto& fields) {
+  double numbers = 0;
+  for (const Field& field : fields) {
+    numbers += static_cast<double>(field.values.size());
+    for (const auto& values : field.material_values) numbers += static_cast<double>(values.size());
+  }
+  return numbers * sizeof(double);
+}
+
+/// Returns the first number behind a text; 0 if there is none.
+double number_behind(std::string_view text, std::string_view before) {
+  const std::size_t at = text.find(before);
+  if (at == std::string_view::npos) return 0;
+  std::string_view rest = text.substr(at + before.size());
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \t\""), rest.size()));
+  double number = 0;
+  const auto [end, code] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  return code == std::errc() && std::isfinite(number) ? std::max(number, 0.0) : 0;
+}
+
+/// Returns the size of a dimension in the header of a netCDF file; 0 if there is none.
+double netcdf_dimension(std::string_view header, std::string_view name) {
+  std::string entry{0, 0, 0, static_cast<char>(name.size())};
+  entry += name;
+  entry.resize((entry.size() + 3) / 4 * 4, '\0');
+  const std::size_t at = header.find(entry);
+  if (at == std::string_view::npos || at + entry.size() + 4 > header.size()) return 0;
+  double size = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    size = 256 * size + static_cast<unsigned char>(header[at + entry.size() + i]);
+  return size;
+}
+
+/// The numbers of cells and points that the header of a mesh states; 0 where it states none.
+struct MeshCounts {
+  double cells = 0, points = 0;
+};
+
+/// Returns the counts of a block of structured cells that reaches from the first to the last points.
+MeshCounts block_counts(const std::array<double, 6>& extent) {
+  MeshCounts counts{1, 1};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cells = std::max(extent[2 * axis + 1] - extent[2 * axis], 0.0);
+    counts.points *= cells + 1;
+    counts.cells *= std::max(cells, 1.0);
+  }
+  return counts;
+}
+
+MeshCounts counts_of_header(const std::filesystem::path& path) {
+  const std::string header = read_beginning(path);
+  const std::string_view text = header;
+  if (text.starts_with("CDF\x01") || text.starts_with("CDF\x02"))
+    return {netcdf_dimension(text, "num_elem"), netcdf_dimension(text, "num_nodes")};
+  if (text.starts_with("# vtk DataFile")) {
+    // The points of structured cells are about as many as these.
+    const double cells = number_behind(text, "\nCELLS "), points = number_behind(text, "\nPOINTS ");
+    return {text.find("DATASET STRUCTURED_GRID") == std::string_view::npos ? cells : points, points};
+  }
+  if (const auto extent = extent_of(text, "WholeExtent")) return block_counts(*extent);
+  return {number_behind(text, "NumberOfCells="), number_behind(text, "NumberOfPoints=")};
+}
+
+/// Counts the places of a mesh where materials meet: faces between cells of different labels, or cells with
+/// several materials.
+std::size_t count_places(const MeshData& data) {
+  std::size_t count = 0;
+  if (!data.labels.empty()) {
+    for (std::size_t f = 0; f < data.mesh.face_count(); ++f) {
+      const auto& [first, second] = data.mesh.cells_of_face(f);
+      if (second != PolyhedralMesh::kNone && data.labels[first] != data.labels[second]) ++count;
+    }
+    return count;
+  }
+  for (std::size_t cell = 0; cell < data.mesh.cell_count(); ++cell) {
+    const bool pure = std::any_of(data.fractions.begin(), data.fractions.end(),
+                                  [cell](const auto& of_one) { return of_one[cell] >= 1; });
+    if (!pure) ++count;
+  }
+  return count;
 }
 
 }  // namespace
@@ -242,20 +337,38 @@ void check_memory_of_headers(const InputOptions& options) {
   const double kept = options.data.region ? 0
                       : !labels.empty()   ? all.rows * (kLabelRow + kLabelRun)
                                           : all.cells * kFractionCell;
-  check_need(options, options.path.string(), all.cells, kProgram + std::max(all.numbers * kReadNumber, kept),
-             "at least");
+  check_need(options, options.path.string(), cells_text(all.cells),
+             kProgram + std::max(all.numbers * kReadNumber, kept), "at least");
 }
 
 void check_memory_of_data(const InputOptions& options, const MultiMaterialData& data) {
   if (options.memory == 0) return;
   const auto cells = static_cast<double>(data.grid.site_count());
-  double numbers = 0;
-  for (const Field& field : data.fields) {
-    numbers += static_cast<double>(field.values.size());
-    for (const auto& values : field.material_values) numbers += static_cast<double>(values.size());
-  }
   const double grid = data.labels.empty() ? bytes_of_fractions(data) : bytes_of_labels(data);
-  check_need(options, data.source, cells, kProgram + grid + numbers * sizeof(double), "about");
+  check_need(options, data.source, cells_text(cells), kProgram + grid + bytes_of_fields(data.fields),
+             "about");
+}
+
+void check_memory_of_mesh_header(const InputOptions& options) {
+  if (options.memory == 0 || std::filesystem::is_directory(options.path)) return;
+  const MeshCounts counts = counts_of_header(options.path);
+  check_need(options, options.path.string(),
+             counts.cells > 0 ? cells_text(counts.cells) : fmt::format("{:.0f} points", counts.points),
+             kProgram + counts.cells * kLeastMeshCell + counts.points * kMeshPoint, "at least", "");
+}
+
+void check_memory_of_mesh(const InputOptions& options, const MeshData& data) {
+  if (options.memory == 0) return;
+  const auto cells = static_cast<double>(data.mesh.cell_count()),
+             faces = static_cast<double>(data.mesh.face_count()),
+             points = static_cast<double>(data.mesh.points().size());
+  const bool labels = !data.labels.empty();
+  const double interfaces = static_cast<double>(count_places(data)) * (labels ? kLabelPlace : kMeshMixedCell);
+  const double of_cell = kMeshCell + (labels ? 0 : kMeshFractionCell);
+  check_need(options, data.source, cells_text(cells),
+             kProgram + cells * of_cell + faces * kMeshFace + points * kMeshPoint + interfaces +
+                 bytes_of_fields(data.fields),
+             "about", "");
 }
 
 }  // namespace adamas::workflow

@@ -332,8 +332,10 @@ std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progre
     wrong_usage("{}: expected given interfaces", options.mending.tolerant ? "--tolerant" : "--weld");
   check_input_file(options.path);
   if (input_kind(options.path) == InputKind::kCells) {
-    auto contents =
-        std::make_shared<Input::Contents>(std::make_unique<MeshData>(load_mesh_data(options, progress)));
+    check_memory_of_mesh_header(options);
+    auto data = std::make_unique<MeshData>(load_mesh_data(options, progress));
+    check_memory_of_mesh(options, *data);
+    auto contents = std::make_shared<Input::Contents>(std::move(data));
     contents->facts.name = options.path.string();
     return contents;
   }

@@ -170,6 +170,7 @@ UnstructuredMesh section_polygons(const CutInput& cut) {
   mesh.cell_arrays.push_back({"cell", 1, numbers(slice.polygon_cells)});
   if (!cut.style.field.empty()) mesh.point_arrays.push_back({cut.style.field, 1, std::move(slice.values)});
   mesh.field_arrays.push_back({"material_names", 1, std::move(slice.materials)});
+  io::add_colours(cut.input.materials(), cut.input.colours, mesh.field_arrays);
   return mesh;
 }
 

@@ -13,6 +13,7 @@
 #include "core/data/multi_material_data.h"
 #include "core/geometry/plane.h"
 #include "core/io/multi_material_reader.h"
+#include "core/io/named_colours.h"
 #include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
@@ -37,7 +38,8 @@ struct SliceInput {
   /// The grid of samples whose axes are not x, y and z: the data are in its frame.
   std::optional<VolumeGrid> turned;
   std::optional<StepOfSeries> step{};
-  std::string sample_name{};  ///< for samples: the name of their array; empty where that is not known
+  io::NamedColours colours{};  ///< of materials for which the files have one
+  std::string sample_name{};   ///< for samples: the name of their array; empty where that is not known
 
   /// Returns whether the data have no materials.
   [[nodiscard]] bool plain() const { return data && !mesh && io::is_plain(*data); }

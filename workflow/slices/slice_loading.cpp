@@ -67,7 +67,9 @@ void load_original(const SliceRequest& request, const InputOptions& options, Pro
     if (option.empty()) return;
     wrong_usage("{}: expected data on a grid", option);
   }
-  input.data = std::make_unique<MultiMaterialData>(load_data(needed_main_file(options), progress));
+  const InputOptions from = needed_main_file(options);
+  input.data = std::make_unique<MultiMaterialData>(load_data(from, progress));
+  input.colours.merge(find_named_colours(from.path, from.region_names));
   if (!input.mesh) return;
   // With given interfaces the mesh may have another box.
   if (!given) check_box(*input.mesh, input.name, *input.data);
@@ -117,6 +119,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
     input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
     input.network = std::move(read.source);
     input.cells = std::move(read.cells);
+    input.colours = find_named_colours(kind == InputKind::kNetwork ? path : "", options.region_names);
     check(input);
     return input;
   }
@@ -127,6 +130,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
     wrong_usage("{}: expected interfaces as INPUT, found {}", option, path);
   if (meshed) {
     input.mesh = load_resampled_mesh(path, progress);
+    input.colours = find_named_colours(path, {});
     from.path = request.original;
     if (!request.original.empty()) check_input_file(request.original);
     const std::string of_grid = grid_option(request, false);

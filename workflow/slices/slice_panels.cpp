@@ -67,6 +67,14 @@ std::string with_index(const std::vector<FieldInfo>& fields, const std::string& 
 /// that both are visible where they agree.
 Stroke original_below() { return {.colour = {0.6, 0.6, 0.6}, .width = 4.2}; }
 
+/// Returns the colour of a material's areas: the one that the files have, or else one by its number.
+Colour area_colour(const SliceInput& input, MaterialId m) {
+  const auto found = input.colours.find(input.materials()[m]);
+  if (found == input.colours.end()) return material_area_colour(m.value);
+  const auto& [red, green, blue] = found->second;
+  return {red, green, blue};
+}
+
 /// Makes a panel of a section: areas by field or material, cells and interfaces as lines.
 SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle& style,
                       const CrossSection& section) {
@@ -80,7 +88,7 @@ SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle&
     FieldPolygon polygon;
     for (const Vec3& p : piece.corners) polygon.points.push_back(to_plane(frame, p));
     if (style.field.empty()) {
-      polygon.colour = material_area_colour(piece.material.value);
+      polygon.colour = area_colour(input, piece.material);
     } else {
       polygon.values = piece.values;
     }
@@ -109,7 +117,7 @@ std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vec
     for (const CrossSection& s : sections) {
       shown = shown || (m.value < s.material_area.size() && s.material_area[m] > kSeen * s.area);
     }
-    if (shown) entries.push_back({input.materials()[m], material_area_colour(m.value)});
+    if (shown) entries.push_back({input.materials()[m], area_colour(input, m)});
   }
   if (entries.size() > kMostNames) entries.clear();
   return entries;

@@ -1,0 +1,119 @@
+#include "core/io/named_colours.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "adamas/text.h"
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
+#include "core/io/labelled_network.h"
+#include "core/io/text_array.h"
+#include "core/io/vtk_xml_array.h"
+
+namespace adamas::io {
+
+namespace {
+
+using LabelColours = std::map<std::int64_t, std::array<double, 3>>;
+using LabelNames = std::map<std::int64_t, std::string>;
+
+/// Adds colours of labels, under the names of the first list that has one, or else the number.
+void add_colours(const LabelColours& colours, const LabelNames& first, const LabelNames& second,
+                 NamedColours& result) {
+  for (const auto& colour : colours) {
+    const std::int64_t label = colour.first;
+    const auto given = first.find(label), known = second.find(label);
+    const std::string name = given != first.end()    ? given->second
+                             : known != second.end() ? visible_text(known->second)
+                                                     : std::to_string(label);
+    result.emplace(name, colour.second);
+  }
+}
+
+constexpr const char* kColours = "material_colors";
+
+/// The arrays of a file that name materials and have their colours.
+struct ColourArrays {
+  std::optional<VolumeSource> names, colours;
+};
+
+ColourArrays find_arrays(const std::filesystem::path& file) {
+  ColourArrays found;
+  VtkXmlArrays arrays(file.string(), file);
+  bool of_mesh = false;
+  for (const XmlTag& tag : read_xml_tags(supply_file(FileHandle::open(file), 0), file.string())) {
+    if (tag.name == "FieldData") of_mesh = !tag.closing;
+    if (tag.closing) continue;
+    if (tag.name == "VTKFile") arrays.read_file_tag(tag);
+    const std::string_view name = tag.value("Name");
+    if (of_mesh && name == kColours) found.colours = arrays.array_of(tag).source;
+    if (of_mesh && (name == "material_names" || name == "adamas materials"))
+      found.names = arrays.array_of(tag).source;
+    if (tag.name != "AppendedData") continue;
+    for (auto* source : {&found.names, &found.colours})
+      if (*source) arrays.find_appended(tag, **source);
+  }
+  return found;
+}
+
+/// Reads the colours that add_colours() has written.
+NamedColours read_colours(const std::filesystem::path& file) {
+  ColourArrays found = find_arrays(file);
+  if (!found.names || !found.colours) return {};
+  const std::vector<std::string> names = read_texts(*found.names);
+  if (found.colours->components != 3 || names.empty())
+    fail("{}: array '{}': expected three numbers for each material, found {}", file.string(), kColours,
+         found.colours->components);
+  found.colours->grid.dimensions = {names.size(), 1, 1};
+  const std::vector<double> values = read_doubles(*found.colours);
+  NamedColours result;
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    const std::array<double, 3> colour{values[3 * m], values[3 * m + 1], values[3 * m + 2]};
+    const auto good = [](double part) { return part >= 0 && part <= 1; };
+    if (std::ranges::all_of(colour, good)) result.emplace(visible_text(names[m]), colour);
+  }
+  return result;
+}
+
+}  // namespace
+
+void add_colours(const IdVector<MaterialId, std::string>& materials, const NamedColours& colours,
+                 std::vector<NamedArray>& arrays) {
+  std::vector<double> rows;
+  bool any = false;
+  for (const std::string& material : materials) {
+    const auto found = colours.find(material);
+    any = any || found != colours.end();
+    const std::array<double, 3> row = found == colours.end() ? std::array{-1.0, -1.0, -1.0} : found->second;
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  if (any) arrays.push_back({kColours, 3, std::move(rows)});
+}
+
+NamedColours find_named_colours(const std::filesystem::path& file,
+                                const std::filesystem::path& region_names) {
+  NamedColours result;
+  LabelNames names;
+  if (!region_names.empty()) {
+    const std::string text = read_file(region_names);
+    names = parse_region_names(text, region_names.string());
+    add_colours(parse_region_colours(text, region_names.string()), names, {}, result);
+  }
+  if (file.empty() || is_file_pattern(file) || std::filesystem::is_directory(file)) return result;
+  const std::string extension = file_extension(file);
+  if (extension == ".vtu" || extension == ".vtp") {
+    result.merge(read_colours(file));
+    return result;
+  }
+  const InputFormat* format = find_format_by_name(file);
+  if (format == nullptr || format->read_header == nullptr) return result;
+  const ImageHeader header = format->read_header(file);
+  add_colours(header.label_colours, names, header.label_names, result);
+  return result;
+}
+
+}  // namespace adamas::io
