@@ -105,6 +105,23 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
   if (rows.size() > 1) console.table(rows);
 }
 
+/// Prints a line for each side set and node set.
+void print_sets(const FileSummary& s, Console& console, Figures& figures) {
+  if (s.sets.empty()) return;
+  const std::string extent = s.flat ? "length" : "area";
+  figures["sets"] = Figures::array();
+  Rows rows{{"set", "of", "number", extent}};
+  for (const SetSummary& set : s.sets) {
+    const std::string of = set.of_nodes ? "nodes" : "sides";
+    Figures own{{"name", set.name}, {"of", of}, {"number", set.size}};
+    if (set.extent) own[extent] = *set.extent;
+    figures["sets"].push_back(std::move(own));
+    rows.push_back({set.name, of, std::to_string(set.size), set.extent ? volume_text(*set.extent) : "-"});
+  }
+  console.print("\n");
+  console.table(rows);
+}
+
 void print_volumes(const std::vector<MaterialVolume>& materials, Console& console, Figures& figures) {
   double whole = 0;
   for (const MaterialVolume& material : materials) whole += material.volume;
@@ -354,6 +371,7 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
       return print_arrays(s, console, figures);
     case InputKind::kCells:
       print_arrays(s, console, figures);
+      print_sets(s, console, figures);
       if (s.kind != "polygons" && s.kind != "lines" && has_data(s, options))
         print_data(options, console, figures);
       return;

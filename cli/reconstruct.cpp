@@ -13,6 +13,7 @@
 #include "cli/interface_figures.h"
 #include "cli/memory_limit.h"
 #include "cli/picture_options.h"
+#include "cli/side_set_options.h"
 #include "cli/simplification_options.h"
 #include "cli/usage.h"
 
@@ -25,7 +26,7 @@ struct Options {
   std::optional<std::size_t> memory;
   ReconstructOptions reconstruction;
   PictureOptions picture;
-  std::string output;
+  std::string output, side_sets;
 };
 
 Figures print_volumes(const ReconstructedInterfaces& result, Console& console) {
@@ -118,28 +119,32 @@ Figures print_result(const ReconstructedInterfaces& result, bool given, Console&
   return figures;
 }
 
-ReconstructedInterfaces reconstruct_input(const Options& options, bool given, Console& console) {
+ReconstructedInterfaces reconstruct_input(const Options& options, bool given, Session& session) {
+  Console& console = session.console;
   Input input =
       read_input(given ? options.input : needed_main_file(options.input), options.reconstruction, console);
   check(options.reconstruction.simplify, input);
   check_shown_interfaces(options.picture.drawing.shown, input.materials(), input.source());
+  write_side_sets(options.side_sets, input, session);
   return adamas::reconstruct(std::move(input), options.reconstruction, console);
 }
 
 void run(Options& options, Session& session) {
   options.input.memory = begin_memory_limit(options.memory, session);
-  if (options.output.empty() && options.picture.file.empty() && session.json.empty())
-    wrong_usage("nothing to write: expected -o, --picture or --json, found none");
+  if (options.output.empty() && options.side_sets.empty() && options.picture.file.empty() &&
+      session.json.empty())
+    wrong_usage("nothing to write: expected -o, --side-sets, --picture or --json, found none");
   check_simplification(options.reconstruction.simplify);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
+  declare_side_sets(options.side_sets, session);
   session.outputs.declare("--picture", options.picture.file, {".png", ".svg", ".pdf", ".html"});
   options.picture.check();
   Console& console = session.console;
   const bool given = has_given_interfaces(options.input);
   if (!given && !options.input.interface_option().empty())
     wrong_usage("{}: expected given interfaces as INPUT", options.input.interface_option());
-  const ReconstructedInterfaces result = reconstruct_input(options, given, console);
+  const ReconstructedInterfaces result = reconstruct_input(options, given, session);
   Figures figures = print_result(result, given, console);
   figures["triangles"] = result.mesh.triangles.size();
   console.step("writing", -1);
@@ -168,10 +173,12 @@ void add_reconstruct(const Command& app, Session& session) {
                    "What to reconstruct: " + grid_files() + ", " + mesh_files() +
                        ", or a network to check and write anew (.vtp, .ply, .arec, .txt)",
                    options.input.path);
-  command.add_option("-o,--output", "FILE",
-                     "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec (at least one of this, --picture "
-                     "and --json)",
-                     options.output);
+  command.add_option(
+      "-o,--output", "FILE",
+      "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec (at least one of this, --picture, "
+      "--side-sets and --json)",
+      options.output);
+  add_side_sets_option(command, options.side_sets);
   ReconstructOptions& reconstruction = options.reconstruction;
   add_simplification_options(command, reconstruction.simplify, "the interfaces");
   add_surface_picture_options(command, options.picture);

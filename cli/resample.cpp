@@ -29,6 +29,7 @@
 #include "cli/resampling_options.h"
 #include "cli/series_figures.h"
 #include "cli/series_options.h"
+#include "cli/side_set_options.h"
 #include "cli/simplification_options.h"
 #include "cli/usage.h"
 
@@ -43,7 +44,7 @@ struct Options {
   ResampleOptions resampling;
   MeshOutputs outputs;
   SimplifyOptions simplify;
-  std::string save, verifier;
+  std::string save, side_sets, verifier;
   std::vector<std::string> curves;
   SeriesFilmOptions film;
 };
@@ -248,6 +249,7 @@ std::string single_option(const Options& options) {
   if (!options.outputs.ledger.empty()) return "--ledger";
   if (!options.outputs.picture.file.empty()) return "--picture";
   if (!options.save.empty()) return "--save";
+  if (!options.side_sets.empty()) return "--side-sets";
   if (!options.verifier.empty()) return "--verify-by";
   if (options.input.data.time) return "--time";
   return options.input.surfaces.empty() ? options.input.interface_option() : "--interface";
@@ -293,12 +295,14 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
 }
 
 /// Reads the input, checks the options that depend on it, and resamples.
-AdaptiveMesh resample_input(const Options& options, Console& console) {
+AdaptiveMesh resample_input(const Options& options, Session& session) {
+  Console& console = session.console;
   const ResampleOptions& resampling = options.resampling;
   Input input = read_input(options.input, {resampling.smooth_labels, resampling.fractions, {}}, console);
   check(resampling, input);
   check(options.simplify, input);
   check_shown_interfaces(options.outputs.picture.drawing.shown, input.materials(), input.source());
+  write_side_sets(options.side_sets, input, session);
   return resample(std::move(input), resampling, console);
 }
 
@@ -325,16 +329,17 @@ void run(Options& options, Session& session) {
   if (options.simplify.error && !options.outputs.need_interfaces())
     wrong_usage("--simplify: expected --interfaces-out or --picture beside it, found none");
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && options.save.empty() &&
-      session.json.empty()) {
+      options.side_sets.empty() && session.json.empty()) {
     wrong_usage(
-        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --ledger, --picture, --save or --json, "
-        "found none");
+        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --ledger, --picture, --save, "
+        "--side-sets or --json, found none");
   }
   check_verifier(options.verifier);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
-  const AdaptiveMesh mesh = resample_input(options, console);
+  declare_side_sets(options.side_sets, session);
+  const AdaptiveMesh mesh = resample_input(options, session);
   options.outputs.colours = find_material_colours(options.input);
   print_resampled(mesh.report(), console);
   Figures figures = resample_json(mesh.report());
@@ -381,6 +386,7 @@ void add_resample(const Command& app, Session& session) {
   command.add_option("--save", "FILE",
                      "The hierarchy, from which adamas select takes meshes of other errors: .h5",
                      options.save);
+  add_side_sets_option(command, options.side_sets);
   command
       .add_option(
           "--verify-by", {},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/mesh_set.h"
 #include "core/data/multi_material_data.h"
 #include "core/data/polyhedral_mesh.h"
 
@@ -23,6 +24,7 @@ struct MeshData {
   Fractions fractions;                ///< by cell; empty where `labels` is given
   std::vector<std::uint16_t> labels;  ///< the index of the one material of each cell; else empty
   std::vector<MeshField> fields;
+  std::vector<MeshSet> sets;  ///< side sets and node sets, which have no part in what is computed
   FractionReport report;
 
   [[nodiscard]] float fraction(MaterialId m, std::size_t cell) const {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "core/base/error.h"
+#include "core/geometry/plane.h"
 #include "core/io/array_names.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
@@ -91,6 +93,27 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   return summary;
 }
 
+/// The area of a side of a cell, of which the triangles from the middle of its points consist, or the length
+/// of an edge.
+double extent_of(std::span<const std::uint32_t> side, const std::vector<Vec3>& points) {
+  if (side.size() == 2) return distance(points[side[0]], points[side[1]]);
+  Vec3 middle;
+  for (const std::uint32_t p : side) middle += (1.0 / static_cast<double>(side.size())) * points[p];
+  double area = 0;
+  for (std::size_t i = 0; i < side.size(); ++i)
+    area += polygon_area({middle, points[side[i]], points[side[(i + 1) % side.size()]]});
+  return area;
+}
+
+void add_sets(const MeshFile& file, FileSummary& summary) {
+  for (const MeshSet& set : file.sets) {
+    SetSummary& item = summary.sets.emplace_back(SetSummary{set.name, set.of_nodes, set.size()});
+    if (set.of_nodes) continue;
+    item.extent = 0;
+    for (std::size_t n = 0; n < set.size(); ++n) *item.extent += extent_of(set.side(n), file.points);
+  }
+}
+
 FileSummary summarize_cells(const std::filesystem::path& path, std::optional<std::uint64_t> time) {
   MeshFile file = read_mesh_file(path, time);
   FileSummary summary;
@@ -98,6 +121,8 @@ FileSummary summarize_cells(const std::filesystem::path& path, std::optional<std
   set_points(file.points, summary);
   summary.cells = file.cell_ends.size();
   summary.blocks = file.blocks.size();
+  summary.flat = file.flat;
+  add_sets(file, summary);
   summary.remark = file.remark;
   add_arrays(std::move(file.arrays), summary);
   return summary;

@@ -15,7 +15,7 @@ const CellFaces kWedgeFaces{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2
 const CellFaces kHexahedronFaces{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
                                  {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
 
-std::uint32_t PointMerger::number(const Vec3& p) {
+std::optional<std::uint32_t> PointMerger::find(const Vec3& p) const {
   const double reach = 0.25 * cell_;
   for (const double x : {p.x - reach, p.x + reach}) {
     for (const double y : {p.y - reach, p.y + reach}) {
@@ -27,6 +27,11 @@ std::uint32_t PointMerger::number(const Vec3& p) {
       }
     }
   }
+  return {};
+}
+
+std::uint32_t PointMerger::number(const Vec3& p) {
+  if (const auto known = find(p)) return *known;
   const auto number = static_cast<std::uint32_t>(points_.size());
   places_.emplace(key(p), number);
   points_.push_back(p);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -21,6 +22,8 @@ class PointMerger {
 
   /// Returns the number of a point.
   std::uint32_t number(const Vec3& p);
+  /// Returns the number of the point at a place; none where there is no point.
+  [[nodiscard]] std::optional<std::uint32_t> find(const Vec3& p) const;
 
  private:
   [[nodiscard]] std::uint64_t key(const Vec3& p) const;

@@ -32,6 +32,7 @@ class Reader {
       options_.note(
           fmt::format("{}: {} of {} cells are tangled: interfaces in them are as good as they can be",
                       data_.source, data_.mesh.tangled_cells(), data_.mesh.cell_count()));
+    data_.sets = std::move(file_.sets);
     const std::vector<std::string>& names = by_blocks_ ? file_.blocks : file_.material_names;
     MaterialArrays arrays(path_, options_, std::move(file_.arrays), names,
                           [this](const std::string& option, const std::filesystem::path& file) {

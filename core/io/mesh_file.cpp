@@ -12,6 +12,7 @@
 #include "adamas/series.h"
 #include "adamas/text.h"
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 #include "core/data/unstructured_mesh.h"
 #include "core/io/file_handle.h"
 #include "core/io/input_file.h"
@@ -45,6 +46,11 @@ void check_sent(const std::string& name, const MeshFile& file) {
     const std::size_t items =
         array.centering == Centering::kCells ? file.cell_ends.size() : file.points.size();
     fits = fits && array.components > 0 && array.size() == items * static_cast<std::size_t>(array.components);
+  }
+  for (const MeshSet& set : file.sets) {
+    const bool by_sides = ascends(set.side_ends, set.points.size(), file.flat ? 2 : 3);
+    fits = fits && (set.of_nodes ? set.side_ends.empty() : by_sides) &&
+           std::ranges::all_of(set.points, [&file](std::uint32_t p) { return p < file.points.size(); });
   }
   if (!fits) fail("{}: expected arrays that fit the mesh, found others", name);
 }
@@ -143,6 +149,7 @@ MeshFile read_mesh_file(const std::filesystem::path& path, std::optional<std::ui
   check_sent(path.string(), file);
   show_names(file.arrays, file.material_names);
   for (std::string& block : file.blocks) block = visible_text(block);
+  for (MeshSet& set : file.sets) set.name = visible_text(set.name);
   return file;
 }
 
@@ -174,6 +181,7 @@ class Sweep {
           : std::visit([&](auto& values) { move_values(array.components, values); }, array.values);
     }
     repeat(file_.block_of_cell);
+    for (MeshSet& set : file_.sets) sweep(set);
   }
 
  private:
@@ -205,12 +213,39 @@ class Sweep {
         for (const std::uint32_t p : own) face.push_back((*side)[p]);
         append_face(face, file_);
       }
-      for (std::size_t i = 0; i < own.size(); ++i) {
-        const std::uint32_t a = own[i], b = own[(i + 1) % own.size()];
-        append_face(std::array{below[a], below[b], above[b], above[a]}, file_);
-      }
+      for (std::size_t i = 0; i < own.size(); ++i)
+        append_face(swept(own[i], own[(i + 1) % own.size()], layer), file_);
       if (!end_cell(file_)) fail("{}: expected cells that enclose a volume, found others", name_);
       begin = end;
+    }
+  }
+
+  /// The corners of the side that an edge becomes in a layer.
+  [[nodiscard]] std::array<std::uint32_t, 4> swept(std::uint32_t a, std::uint32_t b,
+                                                   std::uint32_t layer) const {
+    const auto &below = numbers_[layer], &above = numbers_[(layer + 1) % numbers_.size()];
+    return {below[a], below[b], above[b], above[a]};
+  }
+
+  /// Makes sides of the edges of a set, or takes the points of a node set at all places.
+  void sweep(MeshSet& set) const {
+    const MeshSet flat = std::exchange(set, {set.name, set.of_nodes});
+    if (set.of_nodes) {
+      for (const auto& numbers : numbers_) {
+        for (const std::uint32_t p : flat.points) set.points.push_back(numbers[p]);
+      }
+      sort_unique(set.points);
+    }
+    for (std::size_t n = 0; n < flat.side_ends.size(); ++n) {
+      const auto edge = flat.side(n);
+      for (std::uint32_t layer = 0; layer < between_; ++layer) {
+        std::vector<std::uint32_t> side;
+        for (const std::uint32_t p : swept(edge[0], edge[1], layer)) {
+          if (std::ranges::find(side, p) == side.end()) side.push_back(p);
+        }
+        // An edge on the axis sweeps nothing.
+        if (side.size() >= 3) set.add_side(side);
+      }
     }
   }
 

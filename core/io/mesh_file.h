@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adamas/geometry.h"
+#include "core/data/mesh_set.h"
 #include "core/io/grid_file.h"
 
 namespace adamas::io {
@@ -22,6 +23,7 @@ struct MeshFile {
   std::vector<std::string> blocks;          ///< the names of the blocks, if there are several
   std::vector<std::int32_t> block_of_cell;  ///< the block of each cell then; else empty
   std::vector<std::string> material_names;  ///< as in GridFile
+  std::vector<MeshSet> sets;                ///< side sets and node sets
   std::string remark;                       ///< what else the file holds and is not read; usually empty
 
   void add_remark(const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; }

@@ -20,10 +20,13 @@ inline constexpr auto kSentMembers<GridFile> =
                &GridFile::faces, &GridFile::aslant, &GridFile::space,  &GridFile::remark};
 
 template <>
+inline constexpr auto kSentMembers<MeshSet> =
+    std::tuple{&MeshSet::name, &MeshSet::of_nodes, &MeshSet::points, &MeshSet::side_ends};
+template <>
 inline constexpr auto kSentMembers<MeshFile> =
-    std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points,  &MeshFile::face_ends,
-               &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,       &MeshFile::material_names,
-               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell};
+    std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points,   &MeshFile::face_ends,
+               &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,        &MeshFile::material_names,
+               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell, &MeshFile::sets};
 
 /// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold
 /// all characters.

@@ -15,6 +15,7 @@
 #include "core/io/header_text.h"
 #include "core/io/mesh_builder.h"
 #include "core/io/mesh_file.h"
+#include "core/io/rectilinear_levels.h"
 
 namespace adamas::io {
 
@@ -79,6 +80,7 @@ struct Choice {
   std::vector<Block> blocks;
   std::vector<std::string> variables;    ///< the names of the variables of the blocks
   std::map<int, std::string> materials;  ///< names that go for all blocks, by number
+  bool of_levels = false;                ///< whether the file says that blocks are levels of AMR
   std::string remark;
 };
 
@@ -91,10 +93,11 @@ class SiloReader {
   MeshFile run() {
     DBfile* const file = open(path_);
     const Choice choice = choose(file);
-    for (const Block& block : choice.blocks) {
-      add_block(block, choice);
-      // Silo holds a limited number of files open.
-      std::erase_if(files_, [&](const auto& other) { return other.first != path_; });
+    if (!add_levels(choice)) {
+      for (const Block& block : choice.blocks) {
+        add_block(block, choice);
+        close_others();
+      }
     }
     if (file_.cell_ends.empty()) fail("{}: expected zones of a mesh, found none", name_);
     finish(choice);
@@ -119,6 +122,11 @@ class SiloReader {
     File file(DBOpen(path.c_str(), DB_UNKNOWN, DB_READ));
     if (file == nullptr) fail("{}: expected a Silo file, found something else", path.string());
     return files_.emplace(path, std::move(file)).first->second.get();
+  }
+
+  /// Closes all files but the first, since Silo holds a limited number of files open.
+  void close_others() {
+    std::erase_if(files_, [this](const auto& other) { return other.first != path_; });
   }
 
   /// Finds the file and the name in it of an object that is named "file:name" or "name".
@@ -198,6 +206,20 @@ class SiloReader {
     fail("{}: expected a quadrilateral or unstructured mesh, found others", name_);
   }
 
+  /// Whether a tree of mesh regions tells the levels of adaptive refinement.
+  static bool has_levels(DBfile* file, const std::string& tree) {
+    if (tree.empty()) return false;
+    const Owned<DBmrgtree, [](DBmrgtree* found) { DBFreeMrgtree(found); }> found(
+        DBGetMrgtree(file, tree.c_str()));
+    if (found == nullptr || found->root == nullptr) return false;
+    // The decomposition is a child of the root.
+    for (int n = 0; n < found->root->num_children; ++n) {
+      const DBmrgtnode* const region = found->root->children[n];
+      if (region != nullptr && text(region->name) == "amr_decomp") return true;
+    }
+    return false;
+  }
+
   Choice choose_blocks(DBfile* file, const DBtoc& toc) {
     Choice choice;
     const std::string mesh = first_volume_mesh(file, toc);
@@ -206,6 +228,7 @@ class SiloReader {
     if (toc.nmultimesh > 1) choice.remark = fmt::format("of {} meshes '{}' is read", toc.nmultimesh, mesh);
     const Owned<DBmultimesh, DBFreeMultimesh> blocks(DBGetMultimesh(file, mesh.c_str()));
     if (blocks == nullptr) fail_object(mesh);
+    choice.of_levels = has_levels(file, text(blocks->mrgtree_name));
     for (const std::string& name : block_names(file, blocks->nblocks, blocks->meshnames, blocks->file_ns,
                                                blocks->block_ns, blocks->empty_list, blocks->empty_cnt))
       choice.blocks.push_back({name, {}, {}});
@@ -319,28 +342,42 @@ class SiloReader {
     return result;
   }
 
+  /// Sets the numbers of nodes and zones of a quadrilateral mesh.
+  void count_items(const DBquadmesh& mesh, Taken& taken) const {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(mesh.ndims); ++a) {
+      if (mesh.dims[a] < 2)
+        fail("{}: expected two nodes and more along each axis, found {}", name_, mesh.dims[a]);
+      taken.node_counts[a] = static_cast<std::size_t>(mesh.dims[a]);
+    }
+    const auto [nx, ny, nz] = taken.node_counts;
+    taken.node_count = nx * ny * nz;
+    taken.zone_count = (nx - 1) * (ny - 1) * (mesh.ndims == 3 ? nz - 1 : 1);
+    // What is not checked here is read beyond its end by no one but this process.
+    if (taken.node_count > kMostNodes)
+      fail("{}: expected at most {} nodes, found {}", name_, kMostNodes, taken.node_count);
+  }
+
+  /// Whether a zone is labelled as a ghost.
+  static bool is_ghost(const DBquadmesh& mesh, const Taken& taken, std::size_t zone) {
+    return mesh.ghost_zone_labels != nullptr &&
+           mesh.ghost_zone_labels[reordered(zone, taken.zone_counts(), mesh.major_order)] != 0;
+  }
+
   Taken add_quad_mesh(const DBquadmesh& mesh) {
     set_dimensions(mesh.ndims);
     note_coordinates(mesh.coord_sys);
     Taken taken;
     std::array<std::size_t, 3> first{0, 0, 0}, last{1, 1, 1};
     const auto axes = static_cast<std::size_t>(mesh.ndims);
+    count_items(mesh, taken);
     for (std::size_t a = 0; a < axes; ++a) {
-      if (mesh.dims[a] < 2)
-        fail("{}: expected two nodes and more along each axis, found {}", name_, mesh.dims[a]);
-      taken.node_counts[a] = static_cast<std::size_t>(mesh.dims[a]);
       first[a] = static_cast<std::size_t>(std::clamp(mesh.min_index[a], 0, mesh.dims[a] - 1));
       last[a] = static_cast<std::size_t>(std::clamp(mesh.max_index[a], 0, mesh.dims[a] - 1));
     }
     const auto [nx, ny, nz] = taken.node_counts;
-    taken.node_count = nx * ny * nz;
-    taken.zone_count = (nx - 1) * (ny - 1) * (axes == 3 ? nz - 1 : 1);
     const auto place = [&](std::size_t i, std::size_t j, std::size_t k) {
       return place_in({i, j, k}, taken.node_counts, mesh.major_order);
     };
-    // What is not checked here is read beyond its end by no one but this process.
-    if (taken.node_count > kMostNodes)
-      fail("{}: expected at most {} nodes, found {}", name_, kMostNodes, taken.node_count);
     std::vector<Vec3> points(taken.node_count);
     for (std::size_t k = 0; k < nz; ++k) {
       for (std::size_t j = 0; j < ny; ++j) {
@@ -372,9 +409,7 @@ class SiloReader {
       for (std::size_t j = first[1]; j < last[1]; ++j) {
         for (std::size_t i = first[0]; i < last[0]; ++i) {
           const std::size_t zone = place_in({i, j, k}, taken.zone_counts(), DB_ROWMAJOR);
-          if (mesh.ghost_zone_labels != nullptr &&
-              mesh.ghost_zone_labels[reordered(zone, taken.zone_counts(), mesh.major_order)] != 0)
-            continue;
+          if (is_ghost(mesh, taken, zone)) continue;
           if (file_.flat) {
             add_face(kFaces[4], i, j, k);
           } else {
@@ -557,6 +592,77 @@ class SiloReader {
     return taken;
   }
 
+  /// Reads a block whose nodes are given along its axes; none for blocks of other kinds.
+  std::optional<RectilinearBlock> rectilinear_block(const std::string& object, Taken& taken) {
+    const auto [file, name] = locate(object);
+    const int type = DBInqMeshtype(file, name.c_str());
+    if (type != DB_QUADMESH && type != DB_QUAD_RECT) return {};
+    const QuadMesh mesh(DBGetQuadmesh(file, name.c_str()));
+    if (mesh == nullptr) fail_object(name);
+    if (mesh->coordtype != DB_COLLINEAR || mesh->ndims < 2 || mesh->ndims > 3) return {};
+    note_coordinates(mesh->coord_sys);
+    count_items(*mesh, taken);
+    RectilinearBlock block;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(mesh->ndims); ++a) {
+      for (std::size_t i = 0; i < taken.node_counts[a]; ++i)
+        block.nodes[a].push_back(number_at(mesh->coords[a], mesh->datatype, i));
+    }
+    const std::array<std::size_t, 3> zones = taken.zone_counts();
+    for (std::size_t zone = 0; zone < taken.zone_count; ++zone) {
+      const std::array<std::size_t, 3> at{zone % zones[0], zone / zones[0] % zones[1],
+                                          zone / (zones[0] * zones[1])};
+      bool is_real = !is_ghost(*mesh, taken, zone);
+      Vec3 low, high;
+      for (std::size_t a = 0; a < static_cast<std::size_t>(mesh->ndims); ++a) {
+        is_real = is_real && static_cast<int>(at[a]) >= mesh->min_index[a] &&
+                  static_cast<int>(at[a]) < mesh->max_index[a];
+        low[static_cast<int>(a)] = block.nodes[a][at[a]];
+        high[static_cast<int>(a)] = block.nodes[a][at[a] + 1];
+      }
+      block.left_out.push_back(!is_real);
+      if (!is_real) continue;
+      block.taken.extend(low);
+      block.taken.extend(high);
+    }
+    return block;
+  }
+
+  /// Adds all blocks where they are levels of adaptive refinement; returns whether they are.
+  bool add_levels(const Choice& choice) {
+    std::vector<RectilinearBlock> blocks;
+    std::vector<std::pair<const Block*, Taken>> taken;
+    for (const Block& block : choice.blocks) {
+      if (block.mesh.empty() || choice.blocks.size() < 2) continue;
+      Taken own;
+      auto found = rectilinear_block(block.mesh, own);
+      close_others();
+      if (!found && choice.of_levels)
+        fail("{}: expected rectilinear blocks of levels, found '{}' of another kind", name_, block.mesh);
+      if (!found) return false;
+      blocks.push_back(std::move(*found));
+      taken.emplace_back(&block, std::move(own));
+    }
+    if (blocks.size() < 2) return false;
+    const bool flat = blocks.front().nodes[2].empty();
+    for (const RectilinearBlock& block : blocks) {
+      if (block.nodes[2].empty() != flat) return false;
+    }
+    const auto levels = find_rectilinear_levels(name_, blocks, flat, choice.of_levels);
+    if (!levels) return false;
+    const AmrSources sources = add_amr_cells(name_, *levels, file_);
+    std::size_t first_cell = 0, first_point = 0;
+    for (std::size_t b = 0; b < taken.size(); ++b) {
+      auto& [block, own] = taken[b];
+      own.zones.assign(sources.cells[b].begin(), sources.cells[b].end());
+      own.nodes.assign(sources.points[b].begin(), sources.points[b].end());
+      add_values(*block, choice, own, first_cell, first_point);
+      first_cell += own.zones.size();
+      first_point += own.nodes.size();
+      close_others();
+    }
+    return true;
+  }
+
   void add_block(const Block& block, const Choice& choice) {
     if (block.mesh.empty()) return;
     const auto [file, mesh] = locate(block.mesh);
@@ -580,6 +686,12 @@ class SiloReader {
       default:
         fail("{}: expected a quadrilateral or unstructured mesh, found '{}' of another kind", name_, mesh);
     }
+    add_values(block, choice, taken, first_cell, first_point);
+  }
+
+  /// Adds the material and the variables of a block whose cells and points have been added.
+  void add_values(const Block& block, const Choice& choice, const Taken& taken, std::size_t first_cell,
+                  std::size_t first_point) {
     Material material;
     if (!block.material.empty()) {
       const auto [where, name] = locate(block.material);

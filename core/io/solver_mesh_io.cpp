@@ -10,6 +10,7 @@
 #include "core/base/output_file.h"
 #include "core/io/input_file.h"
 #include "core/io/output_stream.h"
+#include "core/io/polygon_selection.h"
 #include "core/io/unstructured_mesh_io.h"
 
 namespace adamas::io {
@@ -281,28 +282,19 @@ void write_exodus(const std::filesystem::path& path, const SolverMesh& mesh) {
 }  // namespace
 
 UnstructuredMesh face_surface(const SolverMesh& mesh) {
-  constexpr std::int32_t kUnused = -1;
-  UnstructuredMesh surface;
-  surface.kind = CellKind::kPolygons;
-  Integers number(mesh.points.size(), kUnused), points, groups, tetrahedra;
+  PolygonSelection selection(mesh.points);
+  Integers groups, tetrahedra;
   std::vector<std::string> names;
   for (const SolverMesh::FaceGroup& group : mesh.face_groups) {
     for (const SolverMesh::Face& face : group.faces) {
-      for (const std::uint32_t corner : mesh.corners(face)) {
-        if (number[corner] == kUnused) {
-          number[corner] = static_cast<std::int32_t>(points.size());
-          points.push_back(static_cast<std::int32_t>(corner));
-          surface.points.push_back(mesh.points[corner]);
-        }
-        surface.connectivity.push_back(static_cast<std::uint32_t>(number[corner]));
-      }
-      surface.offsets.push_back(surface.connectivity.size());
+      selection.add(mesh.corners(face));
       groups.push_back(static_cast<std::int32_t>(names.size()));
       tetrahedra.push_back(static_cast<std::int32_t>(face.tetrahedron));
     }
     names.push_back(group.name);
   }
-  surface.point_arrays.push_back({"point", 1, std::move(points)});
+  UnstructuredMesh surface = std::move(selection.mesh);
+  surface.point_arrays.push_back({"point", 1, std::move(selection.taken)});
   surface.cell_arrays.push_back({"group", 1, std::move(groups)});
   surface.cell_arrays.push_back({"tetrahedron", 1, std::move(tetrahedra)});
   surface.field_arrays.push_back({"group_names", 1, std::move(names)});

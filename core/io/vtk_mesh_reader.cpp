@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <vtkCGNSReader.h>
+#include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkCompositeDataIterator.h>
@@ -34,9 +35,11 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
 #include "core/io/mesh_builder.h"
@@ -151,6 +154,22 @@ bool is_flat(int type) {
   }
 }
 
+/// Returns how many points of a side of a cell are its corners; 0 for what is no side.
+std::size_t side_corners(vtkDataSet& set, vtkIdType side) {
+  const int type = set.GetCellType(side);
+  if (type == VTK_LINE || type == VTK_QUADRATIC_EDGE) return 2;
+  const int corners = polygon_corners(type);
+  return corners < 0 ? static_cast<std::size_t>(set.GetCell(side)->GetNumberOfPoints())
+                     : static_cast<std::size_t>(corners);
+}
+
+/// The name of a block of a file; empty where it has none.
+std::string block_name(vtkMultiBlockDataSet& blocks, unsigned block) {
+  const char* name =
+      blocks.HasMetaData(block) != 0 ? blocks.GetMetaData(block)->Get(vtkCompositeDataSet::NAME()) : nullptr;
+  return name != nullptr ? name : "";
+}
+
 /// Collects the cells of the data sets of a file.
 class CellCollector {
  public:
@@ -175,16 +194,89 @@ class CellCollector {
     }
   }
 
+  /// Takes the side sets and the node sets out of what is read of an ExodusII file, since they are no cells.
+  void take_sets(vtkMultiBlockDataSet& file) {
+    for (unsigned b = 0; b < file.GetNumberOfBlocks(); ++b) {
+      const std::string kind = block_name(file, b);
+      auto* const sets = vtkMultiBlockDataSet::SafeDownCast(file.GetBlock(b));
+      if (sets == nullptr || (kind != "Side Sets" && kind != "Node Sets")) continue;
+      const bool of_nodes = kind == "Node Sets";
+      for (unsigned s = 0; s < sets->GetNumberOfBlocks(); ++s)
+        sets_.push_back({vtkDataSet::SafeDownCast(sets->GetBlock(s)),
+                         set_name(block_name(*sets, s), of_nodes), of_nodes});
+      file.SetBlock(b, nullptr);
+    }
+  }
+
   MeshFile run() {
     choose_cells();
     number_points();
     add_cells();
+    for (const SetPiece& set : sets_) add_set(set);
+    if (unknown_ > 0)
+      file_.add_remark(
+          fmt::format("{} sides and nodes of sets that belong to no cell are left out", unknown_));
     add_arrays();
     add_blocks();
     return std::move(file_);
   }
 
  private:
+  /// A side set or a node set of a file.
+  struct SetPiece {
+    vtkSmartPointer<vtkDataSet> set;  ///< polygons and lines, or vertices; null for an empty set
+    std::string name;
+    bool of_nodes;
+  };
+
+  /// The name of a set; VTK calls one that has none by a name of its own, which ends in its number.
+  static std::string set_name(const std::string& name, bool of_nodes) {
+    constexpr std::string_view kUnnamed = "Unnamed set ID: ";
+    if (!name.starts_with(kUnnamed)) return name;
+    return (of_nodes ? "node set " : "side set ") + name.substr(kUnnamed.size());
+  }
+
+  void add_set(const SetPiece& piece) {
+    MeshSet& set = file_.sets.emplace_back();
+    set.name = piece.name;
+    set.of_nodes = piece.of_nodes;
+    if (piece.set == nullptr) return;
+    std::vector<std::optional<Index>> numbers;
+    for (vtkIdType p = 0; p < piece.set->GetNumberOfPoints(); ++p) {
+      std::array<double, 3> x{};
+      piece.set->GetPoint(p, x.data());
+      numbers.push_back(merger_->find({x[0], x[1], x[2]}));
+    }
+    piece.of_nodes ? add_nodes(numbers, set) : add_sides(*piece.set, numbers, set);
+  }
+
+  void add_nodes(const std::vector<std::optional<Index>>& numbers, MeshSet& set) {
+    for (const std::optional<Index>& number : numbers) {
+      if (number) set.points.push_back(*number);
+    }
+    unknown_ += numbers.size() - set.points.size();
+    sort_unique(set.points);
+  }
+
+  void add_sides(vtkDataSet& sides, const std::vector<std::optional<Index>>& numbers, MeshSet& set) {
+    std::vector<Index> own;
+    for (vtkIdType s = 0; s < sides.GetNumberOfCells(); ++s) {
+      own.clear();
+      find_points(sides, s, side_corners(sides, s));
+      for (std::size_t i = 0; i < side_corners(sides, s); ++i) {
+        const auto p = static_cast<std::size_t>(ids_->GetId(static_cast<vtkIdType>(i)));
+        // A side of a cell that has collapsed may have a point twice.
+        if (p < numbers.size() && numbers[p] && std::ranges::find(own, *numbers[p]) == own.end())
+          own.push_back(*numbers[p]);
+      }
+      if (file_.flat ? own.size() == 2 : own.size() >= 3) {
+        set.add_side(own);
+      } else {
+        ++unknown_;
+      }
+    }
+  }
+
   /// Finds the cells that have a volume, or polygons if there are none, and are no copies of those of another
   /// piece.
   void choose_cells() {
@@ -249,7 +341,8 @@ class CellCollector {
     }
     if (count >= std::numeric_limits<Index>::max())
       fail("{}: expected fewer than {} points, found {}", name_, std::numeric_limits<Index>::max(), count);
-    PointMerger merger(PointMerger::kCoincident * std::max(box.diagonal(), 1e-300), file_.points);
+    PointMerger& merger =
+        merger_.emplace(PointMerger::kCoincident * std::max(box.diagonal(), 1e-300), file_.points);
     for (MeshPiece& piece : pieces_) {
       std::vector<Index>& numbers = numbers_.emplace_back();
       for (vtkIdType p = 0; p < piece.set->GetNumberOfPoints(); ++p) {
@@ -385,14 +478,22 @@ class CellCollector {
   std::vector<std::vector<Index>> numbers_;                             // of the points of each piece
   vtkSmartPointer<vtkIdList> ids_ = vtkSmartPointer<vtkIdList>::New();  // of the points of one cell
   std::size_t flat_ = 0, hidden_ = 0, collapsed_ = 0, merged_ = 0;
+  std::size_t unknown_ = 0;  // sides and nodes of sets that are not at the cells
   bool higher_degree_ = false;
+  std::vector<SetPiece> sets_;
+  std::optional<PointMerger> merger_;  // of the points of the file
   MeshFile file_;
 };
+
+constexpr const char* kExodus = "ExodusII";
 
 /// Collects the cells of what a reader found; `remark`: what is to be said of it besides.
 MeshFile collected(const std::string& name, const char* kind, vtkDataObject* data,
                    const std::string& remark = {}) {
   CellCollector collector(name);
+  if (auto* const blocks = vtkMultiBlockDataSet::SafeDownCast(data);
+      blocks != nullptr && kind == std::string_view(kExodus))
+    collector.take_sets(*blocks);
   collector.add(data);
   MeshFile file = collector.run();
   file.kind = kind;
@@ -442,6 +543,9 @@ vtkSmartPointer<vtkAlgorithm> open_exodus(const std::string& name) {
   reader->UpdateInformation();
   for (const int type : {vtkExodusIIReader::ELEM_BLOCK, vtkExodusIIReader::NODAL})
     reader->SetAllArrayStatus(type, 1);
+  for (const int type : {vtkExodusIIReader::SIDE_SET, vtkExodusIIReader::NODE_SET}) {
+    for (int set = 0; set < reader->GetNumberOfObjects(type); ++set) reader->SetObjectStatus(type, set, 1);
+  }
   return reader;
 }
 
@@ -467,7 +571,7 @@ std::optional<TimedFormat> timed_format(const std::string& extension) {
   if (extension == ".foam") return TimedFormat{"OpenFOAM case", open_openfoam};
   if (extension == ".cgns") return TimedFormat{"CGNS", open_cgns};
   for (const char* exodus : {".exo", ".e", ".ex2", ".exii", ".g", ".gen"}) {
-    if (extension == exodus) return TimedFormat{"ExodusII", open_exodus};
+    if (extension == exodus) return TimedFormat{kExodus, open_exodus};
   }
   return {};
 }

@@ -26,6 +26,16 @@ struct ArraySummary {
   std::optional<std::string> fraction_of{};
 };
 
+/// A side set or a node set of a mesh.
+struct SetSummary {
+  std::string name;
+  bool of_nodes = false;
+  std::size_t size = 0;  ///< the number of sides or of nodes
+  /// The area of the sides, in the square of the unit of length; of a mesh of two dimensions their length;
+  /// none for a node set.
+  std::optional<double> extent{};
+};
+
 /// The content of a file of any kind that can be read.
 struct FileSummary {
   std::string kind;                    ///< "NRRD", "tetrahedra", "labelled network", ...
@@ -41,6 +51,8 @@ struct FileSummary {
   std::string space;   ///< the name of the coordinate space, as VolumeGrid::space; mostly empty
   std::string remark;  ///< what else the file holds and is not read; mostly empty
   std::vector<ArraySummary> arrays;
+  std::vector<SetSummary> sets;  ///< side sets, then node sets
+  bool flat = false;             ///< whether it is a mesh of two dimensions
 };
 
 /// Throws Error where a file to read is missing, a folder, no plain file, unreadable or empty.

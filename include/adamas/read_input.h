@@ -80,4 +80,12 @@ void check_region_names(const InputOptions& options);
 /// expected there, and Error (kUsage) for options that do not go together.
 Input read_input(const InputOptions& options, Progress& progress = SilentProgress::instance());
 
+/// Writes the surfaces of the side sets and the node sets of an input as polygons (.vtp): the sides of each
+/// side set, and the faces all of whose points are in a node set. `side_set` of polygons is the number of the
+/// set, whose name is in `side_set_names`. Notes sets that have no face. Throws Error (kUsage), in the name
+/// of
+/// --side-sets, where the input has no sets, and Error where the file cannot be written in full.
+void write_set_surfaces(const std::filesystem::path& path, const Input& input,
+                        Progress& progress = SilentProgress::instance());
+
 }  // namespace adamas

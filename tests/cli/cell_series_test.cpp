@@ -80,6 +80,42 @@ TEST_F(CellSeries, FieldsAreCutAndIntegrated) {
   EXPECT_NEAR(water["volume"].get<double>(), volumes_[2], 1e-5);
 }
 
+/// Each picture of a series shows what that of its time alone does.
+TEST_F(CellSeries, AllTimesAreCutWhereSeveralPicturesAreAsked) {
+  const auto pictures = run(command("slice", {"--plane", "x=0.5", "-o", "f_%04d.png", "--json", "all.json"}));
+  EXPECT_EQ(pictures.status, 0) << pictures.err;
+  EXPECT_EQ(files().count("f_0000.png") + files().count("f_0001.png") + files().count("f_0002.png"), 3u);
+  const auto polygons =
+      run(command("slice", {"--plane", "x=0.5", "--steps", "1,2", "-o", "s.pvd", "--json", "some.json"}));
+  EXPECT_EQ(polygons.status, 0) << polygons.err;
+  EXPECT_EQ(files().count("s_0000.vtp"), 0u);
+  EXPECT_EQ(files().count("s_0001.vtp") + files().count("s_0002.vtp"), 2u);
+  const nlohmann::json all = read_json("all.json").at("steps"), some = read_json("some.json").at("steps");
+  ASSERT_EQ(all.size(), 3u);
+  ASSERT_EQ(some.size(), 2u);
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto one = run(command(
+        "slice", {"--plane", "x=0.5", "--time", std::to_string(n), "-o", "one.png", "--json", "one.json"}));
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(all[n].at("time"), 0.5 * static_cast<double>(n));
+    EXPECT_EQ(all[n].at("materials"), read_json("one.json").at("materials"));
+    if (n > 0) {
+      EXPECT_EQ(some[n - 1].at("materials"), all[n].at("materials"));
+    }
+  }
+  EXPECT_LT(all[0].at("materials")[0].at("area").get<double>(),
+            all[2].at("materials")[0].at("area").get<double>());
+}
+
+TEST_F(CellSeries, PicturesOfOneTimeAndOfAllAreToldApart) {
+  expect_wrong_usage(command("slice", {"--plane", "x=0.5", "--time", "1", "-o", "f_%04d.png"}),
+                     {"--time: expected one picture as output, found f_%04d.png"});
+  expect_wrong_usage(command("slice", {"--plane", "x=0.5", "--step", "1", "-o", "one.png"}),
+                     {"--step: expected", "--time says which of its times"});
+  expect_wrong_usage(command("slice", {"--plane", "x=0.5", "--steps", "1,3", "-o", "f_%04d.png"}),
+                     {"--steps"});
+}
+
 TEST_F(CellSeries, ASeriesIsNotOneTime) {
   expect_failure({"resample", "case.foam", "--fraction", "water=alpha.water", "--rest", "air",
                   "--interface-error", "5%", "-o", "one.pvd", "--time", "1"},

@@ -16,7 +16,9 @@
 #include "core/io/interface_mesh_io.h"
 #include "core/io/labelled_network.h"
 #include "core/io/mesh_data_reader.h"
+#include "core/io/mesh_set_surfaces.h"
 #include "core/io/multi_material_reader.h"
+#include "core/io/unstructured_mesh_io.h"
 #include "interfaces/api/input.h"
 #include "interfaces/network/interface_mesh_check.h"
 #include "workflow/input/left_out_steps.h"
@@ -243,6 +245,21 @@ void check_region_names(const InputOptions& options) {
 Input read_input(const InputOptions& options, Progress& progress) {
   const LoopProgress loops(progress);
   return Input(load_contents(options, progress));
+}
+
+void write_set_surfaces(const std::filesystem::path& path, const Input& input, Progress& progress) {
+  const MeshData* cells = input.contents().cells.get();
+  if (cells == nullptr || cells->sets.empty())
+    wrong_usage("--side-sets: expected an INPUT with side sets or node sets, found none in {}",
+                input.source());
+  const UnstructuredMesh surfaces = mesh_set_surfaces(*cells);
+  std::vector<bool> is_shown(cells->sets.size(), false);
+  for (const std::int32_t set : std::get<std::vector<std::int32_t>>(surfaces.cell_arrays.front().values))
+    is_shown[static_cast<std::size_t>(set)] = true;
+  for (std::size_t n = 0; n < is_shown.size(); ++n) {
+    if (!is_shown[n]) note(progress, "{}: '{}' has no face", input.source(), cells->sets[n].name);
+  }
+  write_unstructured_mesh(path, surfaces);
 }
 
 namespace workflow {

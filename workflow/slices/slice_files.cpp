@@ -49,6 +49,7 @@ OneInput one_input(const SliceRequest& request, const SliceSteps& steps) {
   const SliceStep& only = steps.chosen.front();
   one.step = {only.time, only.number};
   one.request.input.path = only.file;
+  if (only.time_number) one.request.input.data.time = only.time_number;
   one.request.step.reset();
   return one;
 }

@@ -75,6 +75,7 @@ class StepSlices {
     one.input.path = step.file;
     one.volume = step.volume;
     one.step = step.stored;
+    if (step.time_number) one.input.data.time = step.time_number;
     if (!originals_.empty()) one.original = originals_[step.number].file;
     if (!last) one.interfaces = false;
     std::optional<CutInput> result;

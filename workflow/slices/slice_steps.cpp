@@ -30,9 +30,18 @@ std::vector<SliceStep> steps_of_store(const SliceRequest& request) {
   return steps;
 }
 
+/// The steps of a file of cells, one for each of its times.
+std::vector<SliceStep> steps_of_cells(const SliceRequest& request) {
+  std::vector<SliceStep> steps;
+  for (const SeriesEntry& entry : mesh_steps(request.inputs[0]))
+    steps.push_back({entry.time, steps.size(), entry.name(), entry.file, request.volume, {}, entry.number});
+  return steps;
+}
+
 /// The steps of the one file that is the input.
 std::vector<SliceStep> steps_within(const SliceRequest& request) {
   if (is_store(request.inputs[0])) return steps_of_store(request);
+  if (kind_by_format(request.inputs[0]) == InputKind::kCells) return steps_of_cells(request);
   std::vector<SliceStep> steps;
   for (VolumeInputStep& step : find_volume_steps(request.inputs, request.volume).steps) {
     steps.push_back(
@@ -87,13 +96,17 @@ bool names_series(const std::string& output) {
 SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output) {
   if (request.step && request.steps) wrong_usage("--step and --steps: expected one of them");
   const bool several = names_series(output) || request.steps;
+  const bool one_file = request.inputs.size() == 1 && !request.volume.stack;
+  const auto of_cells = [&] { return one_file && kind_by_format(request.inputs[0]) == InputKind::kCells; };
+  if (several && request.input.data.time && of_cells())
+    wrong_usage("--time: expected one picture as output, found {}",
+                request.steps ? std::string("--steps") : output);
   std::vector<SliceStep> steps = all_steps(request, several);
   if (steps.empty()) {
     if (several) refuse_series(request, request.steps ? "--steps" : "-o " + output);
-    const bool one_file = request.inputs.size() == 1 && !request.volume.stack;
     if (!request.step || (one_file && is_store(request.inputs[0]))) return {};
     const InputFormat* format = one_file ? find_format_by_name(request.inputs[0]) : nullptr;
-    if (format == nullptr || !format->several_times) refuse_series(request, "--step");
+    if (!of_cells() && (format == nullptr || !format->several_times)) refuse_series(request, "--step");
     wrong_usage(
         "--step: expected a stored series or a series of files, found {}: --time says which of its times",
         request.inputs[0]);

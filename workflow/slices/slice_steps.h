@@ -17,6 +17,8 @@ struct SliceStep {
   std::string file;
   VolumeInput volume;  ///< the options of `slice`, and the time or data set in a file with several
   std::optional<std::uint64_t> stored{};  ///< for a stored series: the number of the step
+  std::optional<std::uint64_t>
+      time_number{};  ///< of a file of cells with several times: the number of the time
 };
 
 /// The steps that are to be cut.
@@ -30,9 +32,9 @@ struct SliceSteps {
 bool names_series(const std::string& output);
 
 /// The series that is to be cut: that of several files, of a pattern or a list (series_steps); or, where the
-/// options or the output ask for several steps, that of one file: a stored series, or several times or data
-/// sets (find_volume_steps). Throws Error (kUsage) at steps that are not there and at options about steps
-/// where there is no series, and Error.
+/// options or the output ask for several steps, that of one file: a stored series, or several times of cells
+/// (mesh_steps), or several times or data sets of volumes (find_volume_steps). Throws Error (kUsage) at steps
+/// that are not there and at options about steps where there is no series, and Error.
 SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output);
 
 }  // namespace adamas::workflow
