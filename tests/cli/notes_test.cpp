@@ -95,7 +95,8 @@ TEST_F(Notes, OutputsAreThoseAskedFor) {
   run_well({"reconstruct", "scene.vtr", "--picture", "p.png"});
   run_well({"reconstruct", "scene.vtr", "--json", "j.json"});
   EXPECT_EQ(files(), (std::set<std::string>{"scene.vtr", "p.png", "j.json"}));
-  expect_wrong_usage({"reconstruct", "scene.vtr"}, {"nothing to write", "-o, --picture or --json"});
+  expect_wrong_usage({"reconstruct", "scene.vtr"},
+                     {"nothing to write", "-o, --side-sets, --picture or --json"});
   const std::vector<std::string> probe{"probe", "scene.vtr", "--point", "0.5,0.5,0.5"};
   auto to_file = probe;
   to_file.insert(to_file.end(), {"-o", "p.csv"});
