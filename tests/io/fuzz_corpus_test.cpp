@@ -12,7 +12,7 @@ TEST(FuzzCorpus, NetworkPly) { EXPECT_EQ(fuzz::replay("network_ply", fuzz::netwo
 TEST(FuzzCorpus, SurfacePly) { EXPECT_EQ(fuzz::replay("surface_ply", fuzz::surface_ply), 2u); }
 TEST(FuzzCorpus, NetworkText) { EXPECT_EQ(fuzz::replay("network_text", fuzz::network_text), 4u); }
 TEST(FuzzCorpus, RegionNames) { EXPECT_EQ(fuzz::replay("region_names", fuzz::region_names), 1u); }
-TEST(FuzzCorpus, NrrdHeader) { EXPECT_EQ(fuzz::replay("nrrd_header", fuzz::nrrd_header), 3u); }
+TEST(FuzzCorpus, NrrdHeader) { EXPECT_EQ(fuzz::replay("nrrd_header", fuzz::nrrd_header), 4u); }
 TEST(FuzzCorpus, Inflate) { EXPECT_EQ(fuzz::replay("inflate", fuzz::inflate), 3u); }
 TEST(FuzzCorpus, Bunzip) { EXPECT_EQ(fuzz::replay("bunzip", fuzz::bunzip), 3u); }
 TEST(FuzzCorpus, LegacyVtk) { EXPECT_EQ(fuzz::replay("legacy_vtk", fuzz::legacy_vtk), 4u); }
