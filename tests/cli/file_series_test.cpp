@@ -9,8 +9,6 @@
 
 namespace adamas::test {
 
-using namespace io;
-
 namespace {
 
 class FileSeries : public ProgramTest {
