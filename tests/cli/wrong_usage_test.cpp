@@ -14,7 +14,7 @@ TEST_F(WrongUsage, Commands) {
   expect_wrong_usage({"resample", "x.vtr", "--nonsense"}, {"--nonsense"});
   expect_wrong_usage({"generate"}, {"expected one of scene", "found none"});
   expect_wrong_usage({"generate", "soup"}, {"expected one of scene", "found 'soup'"});
-  expect_wrong_usage({"reconstruct", "x.vtr"}, {"-o, --picture or --json"});
+  expect_wrong_usage({"reconstruct", "x.vtr"}, {"-o, --side-sets, --picture or --json"});
   expect_wrong_usage({"resample", "-o", "m.vtu"}, {"expected an INPUT, --interface, or files", "found none"});
   expect_wrong_usage({"resample", "x.vtr"}, {"nothing to write", "--interfaces-out", "found none"});
 }
