@@ -190,8 +190,8 @@ void add_speck(InterfaceMesh& mesh, const Vec3& low, const Vec3& high, MaterialI
   if (top) add({corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)});
 }
 
-/// The only junction lines are round a speck that is far smaller than the error, at a plane: cells are as small
-/// there as it takes to show them.
+/// The only junction lines are round a speck that is far smaller than the error, at a plane: cells are as
+/// small there as it takes to show them.
 TEST(CertifiedInterfaces, JunctionsRoundASpeckFarSmallerThanTheError) {
   constexpr double kSize = 0.003;
   InterfaceMesh mesh;

@@ -181,8 +181,8 @@ class LevelFile {
     DBAddRegion(tree, name, 0, count, nullptr, 0, nullptr, nullptr, nullptr, nullptr);
     DBSetCwr(tree, name);
     const std::array<const char*, 1> names{scheme};
-    const std::vector<int> ids(static_cast<std::size_t>(count), 0), lengths(ids), types(ids);
-    DBAddRegionArray(tree, count, names.data(), 0, map, 1, ids.data(), lengths.data(), types.data(), nullptr);
+    const std::vector<int> zeros(static_cast<std::size_t>(count), 0);
+    DBAddRegionArray(tree, count, names.data(), 0, map, 1, zeros.data(), zeros.data(), zeros.data(), nullptr);
     DBSetCwr(tree, "..");
   }
 
