@@ -76,7 +76,9 @@ std::string read_bytes(const std::filesystem::path& path, std::size_t size) {
 std::string read_file(const std::filesystem::path& path) { return read_bytes(path, check_input_file(path)); }
 
 std::string read_beginning(const std::filesystem::path& path) {
-  return read_bytes(path, std::min(check_input_file(path), kLongestHeader));
+  check_input_file(path);
+  // A .foam has no bytes of its own.
+  return read_bytes(path, std::min<std::size_t>(std::filesystem::file_size(path), kLongestHeader));
 }
 
 }  // namespace adamas::io

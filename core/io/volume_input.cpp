@@ -128,6 +128,13 @@ using namespace io;
 
 namespace {
 
+/// Returns the group of a data set, without slashes round it; "/" for the root.
+std::string group_of(const std::string& set) {
+  const std::size_t end = set.find_last_not_of('/', set.rfind('/')), begin = set.find_first_not_of('/');
+  const bool is_root = end == std::string::npos || set.rfind('/') == std::string::npos || begin > end;
+  return is_root ? "/" : set.substr(begin, end + 1 - begin);
+}
+
 /// Returns the series in a file; no steps if it is none, or if one of its volumes is named.
 VolumeInputSteps steps_of_file(const VolumeInput& options) {
   if (options.time || options.raw.dimensions) return {};
@@ -139,6 +146,7 @@ VolumeInputSteps steps_of_file(const VolumeInput& options) {
     input.input.all_times = unpacked;
     input.input.array = step.array;
     if (!step.array.empty()) input.name += ": " + step.array;
+    if (!step.array.empty() && !step.number) input.group = group_of(step.array);
     if (step.number) {
       input.input.time = *step.number;
       input.name += ": time " + std::to_string(*step.number);

@@ -61,6 +61,8 @@ struct VolumeInputStep {
   double time = 0;
   std::string name;  ///< the name in messages: the file, and the part of it where it holds several steps
   VolumeInput input;
+  /// The group of HDF5 whose members are the arrays of the steps; empty where these have one name.
+  std::string group{};
 };
 
 /// The steps that files hold, in the order of their times.

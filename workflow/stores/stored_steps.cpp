@@ -103,14 +103,12 @@ void StoredSteps::close() {
   if (open_ == nullptr) return;
   input_bytes_ += open_->reader().source().sample_file_bytes();
   // The notes about the times of one file are mostly the same.
-  const std::string note =
-      open_->reader().note() + (keeps_numbers() && open_->reader().loses_digits()
-                                    ? ": surfaces and pictures show these, and 'restore' "
-                                      "gives the numbers back as they are"
-                                    : "");
+  std::string note = open_->reader().note();
+  if (keeps_numbers() && open_->reader().loses_digits())
+    note += ": surfaces and pictures show these, and 'restore' gives the numbers back as they are";
   if (note != last_note_) {
-    if (open_->reader().loses_digits() && !keeps_numbers()) {
-      losses_.emplace_back(open_->reader().greatest_change(), note);
+    if (open_->reader().loses_digits()) {
+      changes_.emplace_back(open_->reader().greatest_change(), note);
     } else if (!note.empty()) {
       progress_.note(NoteKind::kRemark, note);
     }
@@ -128,11 +126,12 @@ void StoredSteps::finish() {
                        fmt::format("{}: {} not finite: surfaces have holes there", steps_[step].name,
                                    samples == 1 ? "1 sample is" : fmt::format("{} samples are", samples)));
   note_several(worst_first(std::move(notes)), {"step", "steps"}, progress_);
-  note_several(worst_first(std::move(losses_)), {"step", "steps"}, progress_, NoteKind::kLoss);
+  note_several(worst_first(std::move(changes_)), {"step", "steps"}, progress_,
+               keeps_numbers() ? NoteKind::kRemark : NoteKind::kLoss);
 }
 
 void StoredSteps::note_array(const VolumeInputStep& step, const VolumeSource& source) {
-  if (array_.empty()) array_ = source.array;
+  if (array_.empty()) array_ = step.group.empty() ? source.array : step.group;
   if (source.other_arrays.empty() || source.array == noted_array_) return;
   noted_array_ = source.array;
   note(progress_, "{}: the array '{}' is taken, not '{}': --array names another", step.name, source.array,

@@ -61,7 +61,7 @@ class StoredSteps {
   std::uint64_t input_bytes_ = 0;
   std::map<std::uint32_t, std::uint64_t> infinite_;
   std::string array_, noted_array_, last_note_;
-  std::vector<std::pair<double, std::string>> losses_;  ///< greatest changes of numbers, and notes of them
+  std::vector<std::pair<double, std::string>> changes_;  ///< greatest changes of numbers, and notes of them
 };
 
 }  // namespace adamas::workflow
