@@ -148,6 +148,7 @@ TEST(StoreFiles, ASeriesOfFilesIsTheStoreOfItsSteps) {
   series.write(scratch);
   SeriesSource source = series.source(0, kSteps);
   source.times = {0, 1, 2, 3, 4};
+  source.array = "values";
   VolumeStore::build(scratch / "arrays.adm", source);
   OutputSet outputs;
   const StoreReport report =
