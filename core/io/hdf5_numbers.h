@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "core/io/grid_file.h"
 #include "core/data/stored_type.h"
+#include "core/io/grid_file.h"
 
 namespace adamas::io {
 

@@ -50,7 +50,8 @@ struct StoreReport {
   std::uint64_t input_bytes = 0;   ///< bytes of the samples in the input's files
   BuildReport stored{};
   StoredType numbers = StoredType::kUint8;  ///< the type of the numbers that samples are read from
-  std::string array;  ///< the name of the first step's array, or of the group of all; empty where the file has none
+  /// The name of the first step's array, or of the group of all; empty where the file has none.
+  std::string array;
   /// The number of samples that are no finite numbers, by the number of the step among those stored.
   std::map<std::uint32_t, std::uint64_t> infinite_samples;
 

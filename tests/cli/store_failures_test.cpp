@@ -165,8 +165,7 @@ TEST_F(StoreFailures, ChangedSamplesOfManyStepsAreOneLine) {
     }
     write("s_" + std::to_string(n) + ".raw", samples);
   }
-  const RunResult result =
-      run({"store", "s_%d.raw", "--dimensions", "2", "--type", "int32", "-o", "s.adm"});
+  const RunResult result = run({"store", "s_%d.raw", "--dimensions", "2", "--type", "int32", "-o", "s.adm"});
   EXPECT_EQ(result.status, 0);
   const std::string told = "int32 samples are read as float32";
   EXPECT_EQ(result.err.find(told), result.err.rfind(told)) << result.err;
