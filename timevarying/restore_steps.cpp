@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "core/base/sort_unique.h"
 #include "isosurface/storage/number_remainders.h"
@@ -93,16 +94,6 @@ class NumberRestorer {
     return numbers_;
   }
   [[nodiscard]] bool at_end() const { return planes_ > part_.last.k; }
-  /// Returns whether remainders of the part are damaged.
-  bool damaged() {
-    try {
-      for (std::int32_t k = part_.first.k; has_remainders(type_) && k <= part_.last.k; ++k)
-        load(static_cast<std::uint64_t>(k) << part_.lod);
-      return false;
-    } catch (const DamagedPage&) {
-      return true;
-    }
-  }
 
  private:
   /// Finds the remainders of the samples of the part in plane k of LOD 0.
@@ -110,11 +101,10 @@ class NumberRestorer {
     const VolumeGrid& volume = file_.header().grid;
     const std::uint64_t planes = remainder_planes(volume), record = k / planes;
     if (record_ != record) {
-      const std::uint64_t count = std::min(planes, volume.dimensions[2] - record * planes);
-      const auto bytes = file_.remainders(step_, record);
-      if (!bytes || !decode_remainders(type_, *bytes, count * volume.plane_samples(), remainders_))
+      if (!read_remainders(file_, step_, record, remainders_))
         throw DamagedPage(fmt::format("{}: the remainders of planes {} to {} are damaged{}", file_.name(),
-                                      record * planes, record * planes + count - 1,
+                                      record * planes,
+                                      std::min((record + 1) * planes, volume.dimensions[2]) - 1,
                                       file_.steps() > 1 ? fmt::format(" at step {}", step_) : ""));
       record_ = record;
     }
@@ -141,6 +131,21 @@ class NumberRestorer {
   std::vector<float> values_;
 };
 
+/// Returns whether remainders that a part of a step needs are damaged.
+bool has_damaged_remainders(StoreFile& file, std::uint32_t step, const RestoredPart& part) {
+  const StoreHeader& header = file.header();
+  if (!has_remainders(header.numbers.type)) return false;
+  const std::uint64_t planes = remainder_planes(header.grid);
+  std::vector<std::byte> remainders;
+  std::optional<std::uint64_t> before;
+  for (std::int32_t k = part.first.k; k <= part.last.k; ++k) {
+    const std::uint64_t record = (static_cast<std::uint64_t>(k) << part.lod) / planes;
+    if (std::exchange(before, record) == record) continue;
+    if (!read_remainders(file, step, record, remainders)) return true;
+  }
+  return false;
+}
+
 /// Calls fn(restorer) for one group of steps after another; each group is best restored together.
 template <class Fn>
 void for_each_group(StoreFile& file, const StepRange& steps, const RestoredPart& part, std::size_t memory,
@@ -154,6 +159,16 @@ void for_each_group(StoreFile& file, const StepRange& steps, const RestoredPart&
 }
 
 }  // namespace
+
+bool read_remainders(StoreFile& file, std::uint32_t step, std::uint64_t record,
+                     std::vector<std::byte>& remainders) {
+  const StoreHeader& header = file.header();
+  const std::uint64_t planes = remainder_planes(header.grid);
+  const std::uint64_t count = std::min(planes, header.grid.dimensions[2] - record * planes);
+  const auto bytes = file.remainders(step, record);
+  return bytes &&
+         decode_remainders(header.numbers.type, *bytes, count * header.grid.plane_samples(), remainders);
+}
 
 std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t bytes_each,
                                          std::size_t memory) {
@@ -205,7 +220,7 @@ std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps
     all.insert(all.end(), some.begin(), some.end());
   });
   for (std::uint32_t step = steps.first; step <= steps.last; ++step) {
-    if (NumberRestorer(file, step, part).damaged()) all.push_back(step);
+    if (has_damaged_remainders(file, step, part)) all.push_back(step);
   }
   sort_unique(all);
   return all;

@@ -38,6 +38,11 @@ PageReads restore_numbers(isosurface::StoreFile& file, const StepRange& steps,
                           const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
                           Progress& progress);
 
+/// Reads the remainders of numbers in a record of a step, least byte first. Returns false where they are
+/// damaged.
+bool read_remainders(isosurface::StoreFile& file, std::uint32_t step, std::uint64_t record,
+                     std::vector<std::byte>& remainders);
+
 /// Finds which of some steps cannot be restored, in ascending order, by decoding all of them
 /// and their remainders.
 std::vector<std::uint32_t> damaged_steps(isosurface::StoreFile& file, const StepRange& steps,

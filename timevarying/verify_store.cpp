@@ -13,6 +13,7 @@
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/restore_steps.h"
 #include "timevarying/step_pages.h"
 
 namespace adamas::timevarying {
@@ -51,9 +52,7 @@ void check_remainders(StoreFile& file, std::uint32_t step, VerifiedStore& result
   const std::uint64_t planes = remainder_planes(header.grid);
   for (std::uint64_t record = 0; record < remainder_records(header.grid); ++record) {
     const std::uint64_t first = record * planes, end = std::min(first + planes, header.grid.dimensions[2]);
-    const auto bytes = file.remainders(step, record);
-    if (!bytes || !decode_remainders(header.numbers.type, *bytes, (end - first) * header.grid.plane_samples(),
-                                     remainders))
+    if (!read_remainders(file, step, record, remainders))
       add_bad(fmt::format("the remainders of planes {} to {} are damaged", first, end - 1), step, result);
   }
 }

@@ -212,6 +212,26 @@ TEST(StoredNumbers, ThatAreDamagedAreNeverReturned) {
   EXPECT_GT(refused, 100u);
 }
 
+/// The remainders of the first step are the first bytes behind the prologue.
+TEST(StoredNumbers, ThatAreDamagedAreThoseOfTheirStepAlone) {
+  const Scratch scratch;
+  const auto path = scratch / "numbers.adm";
+  NumberSeries series(StoredType::kFloat64, 2);
+  VolumeStore::build(path, series.source(0, 2));
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(40);
+  file.write("damaged", 7);
+  file.close();
+  VolumeStore store = VolumeStore::open(path);
+  EXPECT_EQ(store.damaged_steps({0, 1}), std::vector<std::uint32_t>{0});
+  EXPECT_EQ(store.restore({}, 0).samples, samples_of(series.type, series.steps[0]));
+  Bytes second;
+  store.restore_numbers({1, 1}, {}, [&second](std::uint32_t, std::span<const std::byte> plane) {
+    second.insert(second.end(), plane.begin(), plane.end());
+  });
+  EXPECT_EQ(second, series.steps[1]);
+}
+
 TEST(StoredNumbers, OfAnotherTypeOrArrayAreNotAppended) {
   const Scratch scratch;
   const auto path = scratch / "numbers.adm";
