@@ -340,7 +340,8 @@ void run(Options& options, Session& session) {
   session.outputs.declare("--save", options.save, {".h5"});
   declare_side_sets(options.side_sets, session);
   const AdaptiveMesh mesh = resample_input(options, session);
-  options.outputs.colours = find_material_colours(options.input);
+  if (options.outputs.need_mesh() || options.outputs.need_interfaces())
+    options.outputs.colours = find_material_colours(options.input);
   print_resampled(mesh.report(), console);
   Figures figures = resample_json(mesh.report());
   finish_interfaces(options, mesh, figures, session);

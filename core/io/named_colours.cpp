@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "adamas/text.h"
 #include "core/base/error.h"
@@ -36,6 +37,16 @@ void add_colours(const LabelColours& colours, const LabelNames& first, const Lab
 
 constexpr const char* kColours = "material_colors";
 
+/// Returns the tags of a file; none where these cannot be read here, as where they are too many: then it is
+/// no file with colours, and another reader takes the rest.
+std::vector<XmlTag> tags_of(const std::filesystem::path& file) {
+  try {
+    return read_xml_tags(supply_file(FileHandle::open(file), 0), file.string());
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 /// The arrays of a file that name materials and have their colours.
 struct ColourArrays {
   std::optional<VolumeSource> names, colours;
@@ -45,7 +56,7 @@ ColourArrays find_arrays(const std::filesystem::path& file) {
   ColourArrays found;
   VtkXmlArrays arrays(file.string(), file);
   bool of_mesh = false;
-  for (const XmlTag& tag : read_xml_tags(supply_file(FileHandle::open(file), 0), file.string())) {
+  for (const XmlTag& tag : tags_of(file)) {
     if (tag.name == "FieldData") of_mesh = !tag.closing;
     if (tag.closing) continue;
     if (tag.name == "VTKFile") arrays.read_file_tag(tag);

@@ -87,6 +87,16 @@ TEST(NamedColours, OfInterfacesComeBack) {
   EXPECT_TRUE(find_named_colours(scratch / "b.vtp", {}).empty());
 }
 
+/// A mesh of another program may have more tags than headers of ours have: it has no colours, but can be
+/// read.
+TEST(NamedColours, OfFilesWithMoreTagsThanOursAreNone) {
+  const test::Scratch scratch;
+  std::string text = "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>";
+  for (int n = 0; n < 60000; ++n) text += "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"></Piece>";
+  put_bytes(scratch / "a.vtu", text + "</UnstructuredGrid></VTKFile>");
+  EXPECT_TRUE(find_named_colours(scratch / "a.vtu", {}).empty());
+}
+
 }  // namespace
 
 }  // namespace adamas
