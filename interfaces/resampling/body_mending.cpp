@@ -16,9 +16,9 @@ namespace {
 
 /// The approximate number of points from which thin places are sought, and the greatest number of points
 /// along a side of a triangle.
-constexpr double kMostPoints = 1e6, kMostAlongSide = 64;
+constexpr double kMostPoints = 2.5e5, kMostAlongSide = 64;
 /// If more triangles than this are at most as large as the spacing, only some of them are used.
-constexpr std::size_t kMostSmall = 500'000;
+constexpr std::size_t kMostSmall = 250'000;
 /// The number of places whose leaves are sought at once.
 constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 16;
 
@@ -29,7 +29,7 @@ constexpr double kFinestForThickness = 0.25;
 /// The greatest thickness of places where bodies are checked for tears, relative to the target.
 constexpr double kMostTornThickness = 4;
 /// The distance between the places that are checked, relative to the target.
-constexpr double kSpacing = 0.5;
+constexpr double kSpacing = 1;
 /// The number of times that cells are split for lost or joined bodies before these are measured again; three
 /// splits halve a cell.
 constexpr int kSplitsForLost = 3;
@@ -45,6 +45,11 @@ constexpr double kJudgedGrowth = 1.1;
 /// bodies at all mends them with few more leaves.
 constexpr double kMostGrowth = 1.25;
 
+/// There are about so many more leaves for each that is split for tears, since others are split with it.
+constexpr std::size_t kMoreLeaves = 16;
+/// That is not relied on for fewer leaves than this.
+constexpr std::size_t kMostForetold = 4 * kHopeForBodies;
+
 /// Moves are of no use if more than this part of the places that were torn is torn after them: on 12 data
 /// sets at 1 to 3%, no moves were accepted that left more than 0.27.
 constexpr double kHopelessPart = 1.0 / 3;
@@ -53,6 +58,8 @@ constexpr double kMostMoved = 0.5;
 /// The height to which a body is raised above the others at the middle of a thin place, relative to its
 /// thickness, so that it also owns the space between such places.
 constexpr double kMargin = 0.25;
+/// Moves must leave at most one fault out of this many.
+constexpr std::size_t kLeastPart = 2;
 /// A mesh whose distance from the input exceeds this, relative to the wanted interface error, is not mended
 /// by moves.
 constexpr double kFarOff = 2;
@@ -174,8 +181,12 @@ BodyMending::Shown BodyMending::extract_and_measure() {
   return before;
 }
 
-void BodyMending::go_back(Shown shown) {
-  shown_.go_back(std::move(shown.extracted));
+void BodyMending::go_back(Shown shown, std::optional<InterfaceComparison> distances) {
+  if (distances) {
+    shown_.go_back({std::move(shown.extracted), *std::move(distances)});
+  } else {
+    shown_.go_back(std::move(shown.extracted));
+  }
   bodies_.go_back(std::move(shown.bodies));
   measured_ = shown_.number();
 }
@@ -280,7 +291,6 @@ BodyMending::TornLeaves BodyMending::torn_leaves() const {
   for (const auto& [place, t] : torn) {
     if (t.diameter > 0 && t.diameter >= kLargeCells * largest) result.leaves.push_back(t.leaf);
   }
-  result.places_in_leaves = result.leaves.size();
   sort_unique(result.leaves);
   return result;
 }
@@ -321,9 +331,8 @@ std::optional<RefinementEnd> BodyMending::split_cells(ShownBodies& best) {
   if (!best.given_away) best.given_away = torn.places;
   std::optional<RefinementEnd> end = RefinementEnd::kSmallestCells;
   while (!torn.leaves.empty()) {
-    // Leaves are split until there is about one more for each of their places.
-    if (state_.hierarchy.leaf_count() + torn.places_in_leaves > best.most_leaves())
-      return RefinementEnd::kSmallestCells;
+    const std::size_t more = kMoreLeaves * torn.leaves.size(), foretold = state_.hierarchy.leaf_count() + more;
+    if (foretold > best.most_leaves() && foretold > kMostForetold) return RefinementEnd::kSmallestCells;
     std::vector<TetrahedronId> created = refinement_.split_failing(std::move(torn.leaves));
     if (created.empty())
       return end ? (state_.budget_spent ? RefinementEnd::kBudget : RefinementEnd::kDepth) : end;
@@ -468,7 +477,9 @@ bool BodyMending::move_interfaces(std::size_t part) {
   // Such moves cannot mend a mesh that may not grow and is much farther away.
   const bool far_off =
       state_.budget_spent && shown_.comparison().greatest() > kFarOff * state_.options.interface_error;
-  if (before.torn == 0 || moved_otherwise || far_off || moving_is_hopeless_) return false;
+  const std::size_t leaves = state_.hierarchy.leaf_count();
+  if (before.torn == 0 || moved_otherwise || far_off) return false;
+  if (moving_is_hopeless_ || leaves == not_mended_) return false;
   const bool within = shown_.comparison().within();
   const std::size_t off = volumes_.bodies_off();
   find_places();
@@ -480,8 +491,9 @@ bool BodyMending::move_interfaces(std::size_t part) {
   Shown unmoved = extract_and_measure();
   BodyFaults now = faults();
   moving_is_hopeless_ = now.torn >= before.torn || now.lost_or_joined > before.lost_or_joined;
-  const bool worth_measuring = !moving_is_hopeless_ && 2 * now.torn <= before.torn;
-  if (worth_measuring) {
+  std::optional<InterfaceComparison> unmoved_distances;
+  if (!moving_is_hopeless_ && kLeastPart * now.torn <= before.torn) {
+    unmoved_distances = shown_.comparison();
     shown_.measure_extracted(true);
     for (int i = 1; within && !shown_.comparison().within() && i <= kMostReturns; ++i) {
       std::vector<VertexId> corners = state_.corners(shown_.failing_leaves());
@@ -496,11 +508,12 @@ bool BodyMending::move_interfaces(std::size_t part) {
         (shown_.comparison().within() || !within) && volumes_.bodies_off() <= off)
       return true;
   }
+  // Another call for the same mesh may be content with more faults, but not with this many.
+  if ((within && !shown_.comparison().within()) || kLeastPart * now.torn > before.torn) not_mended_ = leaves;
   restore(originals);
   state_.forget_contacts(moved);
   state_.restore_contacts(std::move(shown_by_leaves));
-  go_back(std::move(unmoved));
-  if (worth_measuring) shown_.measure_extracted(true);
+  go_back(std::move(unmoved), std::move(unmoved_distances));
   return false;
 }
 

@@ -92,8 +92,9 @@ class BodyMending {
   /// Extracts the interfaces that the leaves show now and compares their bodies, but measures no distances;
   /// returns those before.
   Shown extract_and_measure();
-  /// Returns to interfaces that were shown before, after the leaves were made to show them again.
-  void go_back(Shown shown);
+  /// Returns to interfaces that were shown before, after the leaves were made to show them again, and to their
+  /// distances, if these were measured.
+  void go_back(Shown shown, std::optional<InterfaceComparison> distances = {});
   [[nodiscard]] const BodyReport& report() const { return bodies_.report(); }
   /// Returns the faults of the bodies that were compared last.
   [[nodiscard]] ShownBodies shown_bodies() const { return {faults(), state_.hierarchy.leaf_count(), {}}; }
@@ -122,8 +123,7 @@ class BodyMending {
   using Distances = std::map<std::pair<VertexId, InterfaceId>, double>;
   struct TornLeaves {
     std::vector<TetrahedronId> leaves;
-    std::size_t places = 0;            ///< the number of places within bodies that are given to others
-    std::size_t places_in_leaves = 0;  ///< the number of these that are in the leaves
+    std::size_t places = 0;  ///< the number of places within bodies that are given to others
   };
 
   [[nodiscard]] BodyFaults faults() const { return bodies_.faults(state_.options.interface_error); }
@@ -154,6 +154,7 @@ class BodyMending {
   std::optional<ThinPlaces> places_;  ///< of the bodies that were wrong when places were needed
   IdVector<BodyId, char> sought_;     ///< marks these bodies
   bool moving_is_hopeless_ = false;   ///< whether moving has not made bodies better
+  std::size_t not_mended_ = 0;        ///< the number of leaves of a mesh that moves have not mended
   std::size_t measured_ = 0;          ///< the number of the interfaces whose bodies are compared
 };
 

@@ -10,14 +10,6 @@
 
 namespace adamas::interfaces {
 
-namespace {
-
-/// The bound for estimates relative to the wanted interface error. It is below 1 so that the measured
-/// distance, which accounts for every point, seldom exceeds the wanted one.
-constexpr double kEstimatePart = 0.95;
-
-}  // namespace
-
 ResamplingState::ResamplingState(const ResamplingSource& from, ResamplingOptions wanted, Progress& reports)
     : source(from), options(std::move(wanted)), progress(reports), hierarchy(Domain::fit(from.box)) {
   if (!(options.interface_error > 0)) {
@@ -37,8 +29,6 @@ ResamplingState::ResamplingState(const ResamplingSource& from, ResamplingOptions
   options.field_errors.resize(source.fields ? source.fields->fields().size() : 0);
   displacement = options.interface_error;
 }
-
-double ResamplingState::estimate_target() const { return kEstimatePart * options.interface_error; }
 
 double ResamplingState::volume(TetrahedronId t) const {
   const auto v = hierarchy.vertices(t);

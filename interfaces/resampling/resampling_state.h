@@ -83,8 +83,6 @@ struct ResamplingState {
   /// positive, or the limit is below the number of the roots.
   ResamplingState(const ResamplingSource& source, ResamplingOptions options, Progress& progress);
 
-  /// Returns the bound for estimates, a part of the interface error.
-  [[nodiscard]] double estimate_target() const;
   /// Returns the geometry of a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
   /// Returns the volume of a tetrahedron, in the cube of the unit of length.

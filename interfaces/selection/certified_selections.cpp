@@ -19,8 +19,6 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// would be more than `kGrowth` times as large as the previous one. Meshes for errors in between are finer
 /// than necessary.
 constexpr double kStep = 1.1, kLeastStep = 1.02, kGrowth = 1.2;
-/// The bound for estimates relative to the wanted error, as when the hierarchy was made.
-constexpr double kEstimatePart = 0.95;
 constexpr int kMostRounds = 20;
 
 class Certifier {
@@ -73,7 +71,7 @@ class Certifier {
   /// `in_small_steps`, returns none if the mesh would grow too much for one step.
   std::optional<InterfaceMesh> split_to(double target, bool in_small_steps) {
     for (int round = 0;; ++round) {
-      split_for_estimates(kEstimatePart * target);
+      split_for_estimates(target);
       selection_.choose(split_);
       const double most = kGrowth * static_cast<double>(certified_size_);
       if (in_small_steps && static_cast<double>(selection_.size()) > most) return std::nullopt;
