@@ -20,6 +20,7 @@
 #include "core/io/mesh_builder.h"
 #include "core/io/reader_program.h"
 #include "core/io/sent_grids.h"
+#include "core/io/spy_dump.h"
 #include "core/io/vtk_checks.h"
 
 namespace adamas::io {
@@ -61,7 +62,7 @@ InputFormat cells_format() {
   return {.name = "cells of a mesh",
           .kind = InputKind::kCells,
           .endings = ".vts .pvtu .pvts .vtm .vth .foam .exo .cgns .silo .pdb",
-          .more_endings = ".vthb .e .ex2 .exii .g .gen"};
+          .more_endings = ".vthb .e .ex2 .exii .g .gen .spcth-timeseries"};
 }
 
 namespace {
@@ -118,6 +119,7 @@ bool is_mesh_by_header(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, code)) return false;
   const std::string extension = file_extension(path);
   if (extension == ".vtk") return is_legacy_mesh(path);
+  if (is_spy_dump(path)) return true;
   return extension == ".vtu" ? is_foreign_vtu(path) : hdf5_origin(path) != Hdf5Origin::kNone;
 }
 
