@@ -15,6 +15,7 @@
 #include "core/base/sort_unique.h"
 #include "core/data/unstructured_mesh.h"
 #include "core/io/file_handle.h"
+#include "core/io/hdf5_layout.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/mesh_builder.h"
@@ -97,6 +98,7 @@ Hdf5Origin hdf5_origin(const std::filesystem::path& path) {
   if (file->read_some(0, std::as_writable_bytes(std::span(magic))) != magic.size() ||
       std::string_view(magic.data(), magic.size()) != "\x89HDF\r\n\x1a\n")
     return Hdf5Origin::kNone;
+  if (hdf5_layout().of_cells()) return Hdf5Origin::kMesh;
   constexpr std::size_t kSearched = 4 << 20;
   std::string bytes(kSearched, '\0');
   const std::uint64_t size = std::filesystem::file_size(path);

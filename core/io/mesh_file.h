@@ -33,7 +33,7 @@ struct MeshFile {
 enum class Hdf5Origin : std::uint8_t {
   kNone,
   kSilo,
-  kMesh,  ///< Truchas, FLASH, or AMR of VTKHDF
+  kMesh,  ///< Truchas, FLASH, AMR of VTKHDF, or any that set_hdf5_layout() has described
   kVtk,   ///< an unstructured grid of VTKHDF
 };
 
@@ -60,8 +60,8 @@ std::vector<double> mesh_times_with_vtk(const std::filesystem::path& path);
 /// material.
 MeshFile read_silo_mesh(const std::filesystem::path& path);
 
-/// Reads, in this process, a mesh of Truchas, at a time as read_mesh_file does, blocks of FLASH, or
-/// overlapping AMR of VTKHDF.
+/// Reads, in this process, a mesh as set_hdf5_layout() has described it or, without that, a mesh of Truchas,
+/// at a time as read_mesh_file does, blocks of FLASH, or overlapping AMR of VTKHDF.
 MeshFile read_hdf5_mesh(const std::filesystem::path& path, std::optional<std::uint64_t> time = {});
 std::vector<double> hdf5_mesh_times(const std::filesystem::path& path);
 

@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 
+#include "adamas/files.h"
 #include "core/base/error.h"
 #include "core/io/framed_bytes.h"
 #include "core/io/reader_program.h"
@@ -57,6 +58,7 @@ int run_reader_program() {
       fail("expected the program adamas-reader of version {}, found that of {}", version, reader_version());
     source.get(request);
     source.expect_end();
+    set_hdf5_layout(request.layout);
     run_reader(request, sink);
     sink.finish();
     return 0;

@@ -19,6 +19,7 @@
 #include "core/base/sanitizers.h"
 #include "core/base/unnamed_file.h"
 #include "core/io/array_file_head.h"
+#include "core/io/hdf5_layout.h"
 #include "core/io/input_file.h"
 #include "core/io/spy_dump.h"
 
@@ -92,6 +93,7 @@ ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path
   }
   const bool of_cells = reader == LibraryReader::kCells || reader == LibraryReader::kCellTimes;
   if (of_cells && is_spy_dump(path)) request.input_bytes = size_of_folder(path.parent_path());
+  request.layout = hdf5_layout_texts();
   return request;
 }
 

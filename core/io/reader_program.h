@@ -39,13 +39,14 @@ struct ReaderRequest {
   Vec3 spacing{1, 1, 1}, origin{};      ///< spacing and origin of a stack
   std::optional<std::uint64_t> time{};  ///< the number of a time, if a volume has several
   std::vector<std::string> arrays{};    ///< the names of the arrays in a file of arrays
+  std::vector<std::string> layout{};    ///< of files of HDF5 (set_hdf5_layout())
 };
 
 template <>
-inline constexpr auto kSentMembers<ReaderRequest> =
-    std::tuple{&ReaderRequest::reader, &ReaderRequest::name,  &ReaderRequest::input_bytes,
-               &ReaderRequest::paths,  &ReaderRequest::array, &ReaderRequest::spacing,
-               &ReaderRequest::origin, &ReaderRequest::time,  &ReaderRequest::arrays};
+inline constexpr auto kSentMembers<ReaderRequest> = std::tuple{
+    &ReaderRequest::reader, &ReaderRequest::name,    &ReaderRequest::input_bytes, &ReaderRequest::paths,
+    &ReaderRequest::array,  &ReaderRequest::spacing, &ReaderRequest::origin,      &ReaderRequest::time,
+    &ReaderRequest::arrays, &ReaderRequest::layout};
 
 template <>
 inline constexpr auto kSentMembers<NamedArray> =
