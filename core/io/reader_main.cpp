@@ -23,6 +23,8 @@ void run_reader(const ReaderRequest& request, ByteSink& sink) {
     case LibraryReader::kGrid:
     case LibraryReader::kHdf5Grid:
       return send_grid(request, sink);
+    case LibraryReader::kDicomSeries:
+      return send_dicom_series(request, sink);
     case LibraryReader::kMesh:
       return send_mesh(request, sink);
     case LibraryReader::kCells:

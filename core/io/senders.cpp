@@ -37,6 +37,10 @@ void send_grid(const ReaderRequest& request, ByteSink& sink) {
                                   : read_dicom_series(path, request.arrays));
 }
 
+void send_dicom_series(const ReaderRequest& request, ByteSink& sink) {
+  sink.put(list_dicom_series(request.paths.front()));
+}
+
 namespace {
 
 const GridArray& chosen_array(const std::string& name, const GridFile& file, const std::string& wanted) {
