@@ -420,10 +420,10 @@ Figures print_one(const Options& all, Session& session) {
   Figures figures{{"file", path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", path, summary.kind);
   print_grid(summary, session.console, figures);
-  if (const std::vector<double> times = mesh_times(path); times.size() > 1) {
-    session.console.print("  {}; this is number {} (--time)\n", times_text(times),
-                          options.data.time.value_or(times.size() - 1));
-    figures["times"] = times;
+  if (summary.times.size() > 1) {
+    session.console.print("  {}; this is number {} (--time)\n", times_text(summary.times),
+                          options.data.time.value_or(summary.times.size() - 1));
+    figures["times"] = summary.times;
   }
   print_details(summary, options, session.console, figures);
   if (!summary.remark.empty() && !has_data(summary, options))

@@ -128,6 +128,7 @@ FileSummary summarize_cells(const std::filesystem::path& path, std::optional<std
   summary.flat = file.flat;
   add_sets(file, summary);
   summary.remark = file.remark;
+  summary.times = file.times;
   add_arrays(std::move(file.arrays), summary);
   return summary;
 }
@@ -161,8 +162,7 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 std::vector<SeriesSummary> folder_series(const std::filesystem::path& path) {
   std::error_code unknown;
   if (!std::filesystem::is_directory(path, unknown) || !is_dicom_folder(path)) return {};
-  auto series =
-      receive_from_child<std::vector<SeriesSummary>>(request_of(LibraryReader::kDicomSeries, path));
+  auto series = receive_from_child<std::vector<SeriesSummary>>(request_of(LibraryReader::kDicomSeries, path));
   for (SeriesSummary& one : series) {
     one.name = visible_text(one.name);
     one.uid = visible_text(one.uid);

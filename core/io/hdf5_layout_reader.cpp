@@ -61,6 +61,7 @@ class LaidOutReader {
       add_grid();
     }
     add_arrays();
+    file_.times = times_;
     if (!time && times_.size() > 1) file_.add_remark(last_time_remark(times_.size(), times_.back()));
     return std::move(file_);
   }

@@ -41,16 +41,22 @@ class TruchasReader {
     return groups;
   }
 
+  [[nodiscard]] std::vector<double> times() const {
+    std::vector<double> result;
+    for (const std::string& group : steps()) result.push_back(source_.time_of(group).value_or(0));
+    return result;
+  }
+
   MeshFile run(std::optional<std::uint64_t> time) {
     file_.kind = "Truchas HDF5";
     add_cells();
     const std::vector<std::string> groups = steps();
     if (time.value_or(0) >= std::max<std::size_t>(groups.size(), 1))
       fail_for_time(source_.name(), groups.size(), *time);
+    file_.times = times();
     if (!groups.empty()) {
       const std::string& group = groups[time.value_or(groups.size() - 1)];
-      if (!time && groups.size() > 1)
-        file_.add_remark(last_time_remark(groups.size(), source_.time_of(group).value_or(0)));
+      if (!time && groups.size() > 1) file_.add_remark(last_time_remark(groups.size(), file_.times.back()));
       for (const std::string& set : source_.names(group)) add_set(group + "/" + set, set);
     }
     if (source_.has(kBlocks)) add_blocks(source_.read(kBlocks));
@@ -391,11 +397,7 @@ MeshFile read_hdf5_mesh(const std::filesystem::path& path, std::optional<std::ui
 std::vector<double> hdf5_mesh_times(const std::filesystem::path& path) {
   const Hdf5Meshes source(path);
   if (hdf5_layout().of_cells()) return laid_out_times(source, hdf5_layout());
-  std::vector<double> times;
-  if (!source.has(kPoints)) return times;
-  for (const std::string& group : TruchasReader(source).steps())
-    times.push_back(source.time_of(group).value_or(0));
-  return times;
+  return source.has(kPoints) ? TruchasReader(source).times() : std::vector<double>();
 }
 
 }  // namespace adamas::io

@@ -24,6 +24,7 @@ struct MeshFile {
   std::vector<std::int32_t> block_of_cell;  ///< the block of each cell then; else empty
   std::vector<std::string> material_names;  ///< as in GridFile
   std::vector<MeshSet> sets;                ///< side sets and node sets
+  std::vector<double> times;                ///< all that the file has; empty where it states none
   std::string remark;                       ///< what else the file holds and is not read; usually empty
 
   void add_remark(const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; }

@@ -27,7 +27,8 @@ template <>
 inline constexpr auto kSentMembers<MeshFile> =
     std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points,   &MeshFile::face_ends,
                &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,        &MeshFile::material_names,
-               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell, &MeshFile::sets};
+               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell, &MeshFile::sets,
+               &MeshFile::times};
 
 template <>
 inline constexpr auto kSentMembers<SeriesSummary> =

@@ -624,6 +624,7 @@ MeshFile read_spy_dump(const std::filesystem::path& path, std::optional<std::uin
   const ListedTime& chosen = times[time.value_or(times.size() - 1)];
   SpyDump dump(chosen.dump);
   MeshFile file = SpyMesh(dump, chosen.number).run();
+  for (const ListedTime& each : times) file.times.push_back(each.time);
   if (!time && times.size() > 1) file.add_remark(last_time_remark(times.size(), chosen.time));
   return file;
 }

@@ -53,6 +53,7 @@ struct FileSummary {
   std::vector<ArraySummary> arrays;
   std::vector<SetSummary> sets;  ///< side sets, then node sets
   bool flat = false;             ///< whether it is a mesh of two dimensions
+  std::vector<double> times;     ///< of a file of cells that states some (mesh_times()); else empty
 };
 
 /// A series of images in a folder.

@@ -60,7 +60,10 @@ inline void surface_ply(std::string_view bytes) {
 }
 
 inline void region_names(std::string_view bytes) {
-  for (const auto& [label, name] : parse_region_names(bytes, "fuzz")) require(!name.empty(), "empty name");
+  const RegionTable table = parse_region_table(bytes, "fuzz");
+  for (const auto& [label, name] : table.names) require(!name.empty(), "empty name");
+  for (const auto& [label, colour] : table.colours)
+    require(table.names.contains(label), "a colour of nothing");
 }
 
 inline void nrrd_header(std::string_view bytes) {

@@ -124,7 +124,8 @@ MaterialDataOptions data_options(const InputOptions& options, Progress& progress
     how.stack_origin = options.raw.origin;
   }
   if (!options.region_names.empty() && !how.labels.empty()) {
-    how.label_names = parse_region_names(read_file(options.region_names), options.region_names.string());
+    how.label_names =
+        parse_region_table(read_file(options.region_names), options.region_names.string()).names;
   }
   return how;
 }
