@@ -420,10 +420,10 @@ Figures print_one(const Options& all, Session& session) {
   Figures figures{{"file", path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", path, summary.kind);
   print_grid(summary, session.console, figures);
-  if (const std::vector<double> times = mesh_times(path); times.size() > 1) {
-    session.console.print("  {}; this is number {} (--time)\n", times_text(times),
-                          options.data.time.value_or(times.size() - 1));
-    figures["times"] = times;
+  if (summary.times.size() > 1) {
+    session.console.print("  {}; this is number {} (--time)\n", times_text(summary.times),
+                          options.data.time.value_or(summary.times.size() - 1));
+    figures["times"] = summary.times;
   }
   print_details(summary, options, session.console, figures);
   if (!summary.remark.empty() && !has_data(summary, options))
@@ -465,11 +465,42 @@ Figures print_series(const Options& all, const std::vector<VolumeInputStep>& ste
   return figures;
 }
 
+/// Prints the series of a folder that has several, and for each the command that reads it; returns no figures
+/// where it has not, or where one is chosen.
+Figures print_folder_series(const Options& all, Session& session) {
+  const std::string path = all.input.path.string();
+  if (!all.volume.array.empty() || names_materials(all.input)) return {};
+  const std::vector<SeriesSummary> series = folder_series(path);
+  if (series.size() < 2) return {};
+  Figures figures{{"file", path}, {"kind", "DICOM"}};
+  session.console.print("{}: DICOM, {} series; one of them by\n\n", path, series.size());
+  std::vector<std::string> commands;
+  std::size_t widest = 0;
+  for (const SeriesSummary& one : series) {
+    commands.push_back(fmt::format("adamas info {} --array {}", as_argument(path), as_argument(one.name)));
+    widest = std::max(widest, commands.back().size());
+    figures["series"].push_back(
+        {{"name", one.name}, {"uid", one.uid}, {"modality", one.kind}, {"files", one.files}});
+  }
+  for (std::size_t i = 0; i < series.size(); ++i)
+    session.console.print("  {:<{}}   {}, {}\n", commands[i], widest,
+                          series[i].kind.empty() ? "images" : series[i].kind,
+                          counted(series[i].files, "file"));
+  session.console.print(
+      "\n--array is an option of all commands on volumes; --labels, --fraction and --field name series "
+      "too\n");
+  return figures;
+}
+
 void run(const Options& given, Session& session) {
   Options all{needed_main_file(given.input, "a FILE"), given.volume};
   share_raw_options(all.input, all.volume);
   share_time(all.input.path, all.input, all.volume);
   session.outputs.protect(all.input.path);
+  if (const Figures listed = print_folder_series(all, session); !listed.empty()) {
+    write_figures(listed, session);
+    return session.commit();
+  }
   const std::vector<VolumeInputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);
   write_figures(figures, session);

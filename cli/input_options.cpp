@@ -86,6 +86,15 @@ void add_material_options(const Command& command, InputOptions& options, const s
                   "A field of amounts per cell, to be divided by the material's volume there; repeatable",
                   data.extensive)
       .one_value_each();
+  input.add_converted_each(
+      "--hdf5", "KEY=DATASET",
+      "Of a file of HDF5: the data set of its nodes, its cells (with base=1 where they "
+      "count nodes from 1), the axes x, y and z of a grid, boxes of blocks, or the groups "
+      "of its steps or its times; repeatable, as a list in --config",
+      [layout = std::vector<std::string>()](const std::string&, const std::string& text) mutable {
+        layout.push_back(text);
+        set_hdf5_layout(layout);
+      });
   input.add_value("--extrude", "H", "Of a mesh of two dimensions: the height of the cells made of it",
                   data.extrude, parse_positive);
   input.add_flag("--axisymmetric",

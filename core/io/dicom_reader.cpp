@@ -30,15 +30,15 @@ namespace adamas::io {
 
 namespace {
 
-const gdcm::Tag kSopClass(0x0008, 0x0016), kSeriesText(0x0008, 0x103e), kPixelSpacing(0x0028, 0x0030),
-    kDetectorSpacing(0x0018, 0x1164), kSliceSpacing(0x0018, 0x0088), kSeries(0x0020, 0x000e),
-    kPosition(0x0020, 0x0032), kOrientation(0x0020, 0x0037), kOffsets(0x3004, 0x000c),
-    kIntercept(0x0028, 0x1052), kSlope(0x0028, 0x1053), kPixels(0x7fe0, 0x0010), kShared(0x5200, 0x9229),
-    kPerFrame(0x5200, 0x9230), kPlanePosition(0x0020, 0x9113), kPlaneOrientation(0x0020, 0x9116),
-    kMeasures(0x0028, 0x9110), kTransformation(0x0028, 0x9145), kSegmentOfFrame(0x0062, 0x000a),
-    kReferencedSegment(0x0062, 0x000b), kSegments(0x0062, 0x0002), kSegmentNumber(0x0062, 0x0004),
-    kSegmentLabel(0x0062, 0x0005), kSegmentationType(0x0062, 0x0001), kMostFraction(0x0062, 0x000e),
-    kStorage(0x0002, 0x0002);
+const gdcm::Tag kSopClass(0x0008, 0x0016), kModality(0x0008, 0x0060), kSeriesText(0x0008, 0x103e),
+    kPixelSpacing(0x0028, 0x0030), kDetectorSpacing(0x0018, 0x1164), kSliceSpacing(0x0018, 0x0088),
+    kSeries(0x0020, 0x000e), kPosition(0x0020, 0x0032), kOrientation(0x0020, 0x0037),
+    kOffsets(0x3004, 0x000c), kIntercept(0x0028, 0x1052), kSlope(0x0028, 0x1053), kPixels(0x7fe0, 0x0010),
+    kShared(0x5200, 0x9229), kPerFrame(0x5200, 0x9230), kPlanePosition(0x0020, 0x9113),
+    kPlaneOrientation(0x0020, 0x9116), kMeasures(0x0028, 0x9110), kTransformation(0x0028, 0x9145),
+    kSegmentOfFrame(0x0062, 0x000a), kReferencedSegment(0x0062, 0x000b), kSegments(0x0062, 0x0002),
+    kSegmentNumber(0x0062, 0x0004), kSegmentLabel(0x0062, 0x0005), kSegmentationType(0x0062, 0x0001),
+    kMostFraction(0x0062, 0x000e), kStorage(0x0002, 0x0002);
 constexpr const char* kSegmentationStorage = "1.2.840.10008.5.1.4.1.1.66.4";
 constexpr const char* kDirectoryStorage = "1.2.840.10008.1.3.10";
 
@@ -468,7 +468,7 @@ class SliceReader {
 
 /// The files of a series in a folder.
 struct Series {
-  std::string text;
+  std::string text, kind;
   std::vector<std::string> files;
 };
 
@@ -484,12 +484,13 @@ std::map<std::string, Series> series_in(const std::filesystem::path& folder, std
   for (const std::string& file : files) {
     gdcm::Reader reader;
     reader.SetFileName(file.c_str());
-    if (!reader.ReadSelectedTags({kStorage, kSopClass, kSeriesText, kSeries}))
+    if (!reader.ReadSelectedTags({kStorage, kSopClass, kModality, kSeriesText, kSeries}))
       fail("{}: expected a file of DICOM, found a damaged one", file);
     const gdcm::DataSet& header = reader.GetFile().GetDataSet();
     if (text_of(reader.GetFile().GetHeader(), kStorage) == kDirectoryStorage) continue;
     Series& own = series[text_of(header, kSeries)];
     own.text = text_of(header, kSeriesText);
+    own.kind = text_of(header, kModality);
     own.files.push_back(file);
   }
   return series;
@@ -583,6 +584,19 @@ GridFile read_dicom(const std::filesystem::path& path, const std::string& series
   reader.name_values(file_stem(path));
   reader.add(path.string());
   return reader.grid();
+}
+
+std::vector<SeriesSummary> list_dicom_series(const std::filesystem::path& path) {
+  silence_gdcm();
+  std::size_t others = 0;
+  const std::map<std::string, Series> all = series_in(path, others);
+  std::vector<SeriesSummary> result;
+  for (const auto& [uid, own] : all) {
+    const auto same =
+        std::ranges::count_if(all, [&own](const auto& one) { return one.second.text == own.text; });
+    result.push_back({own.text.empty() || same > 1 ? uid : own.text, uid, own.kind, own.files.size()});
+  }
+  return result;
 }
 
 GridFile read_dicom_series(const std::filesystem::path& path, const std::vector<std::string>& wanted) {

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "adamas/file_summary.h"
 #include "core/io/grid_file.h"
 
 namespace adamas::io {
@@ -22,6 +24,9 @@ bool is_dicom_folder(const std::filesystem::path& path);
 /// the description or the UID of a series if the folder has several; usually empty. Throws Error, with the
 /// file's name, if files differ in size or orientation or lack places, and if a folder has several series.
 GridFile read_dicom(const std::filesystem::path& path, const std::string& series = {});
+
+/// The series in a folder (folder_series()), in this process.
+std::vector<SeriesSummary> list_dicom_series(const std::filesystem::path& path);
 
 /// Reads series of a folder in this process, as arrays of one grid: those whose description or UID, which is
 /// the name of the array then, is among `wanted`. A file, or a folder of one series, is read as read_dicom()

@@ -7,16 +7,20 @@
 #include <tuple>
 
 #include "adamas/geometry.h"
+#include "adamas/text.h"
 #include "adamas/volume.h"
 #include "core/base/error.h"
 #include "core/geometry/plane.h"
 #include "core/io/array_names.h"
+#include "core/io/dicom_reader.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/mesh_file.h"
 #include "core/io/polygon_soup.h"
+#include "core/io/reader_program.h"
+#include "core/io/sent_grids.h"
 #include "core/io/unstructured_mesh_io.h"
 
 namespace adamas {
@@ -124,6 +128,7 @@ FileSummary summarize_cells(const std::filesystem::path& path, std::optional<std
   summary.flat = file.flat;
   add_sets(file, summary);
   summary.remark = file.remark;
+  summary.times = file.times;
   add_arrays(std::move(file.arrays), summary);
   return summary;
 }
@@ -153,6 +158,18 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::vector<SeriesSummary> folder_series(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(path, unknown) || !is_dicom_folder(path)) return {};
+  auto series = receive_from_child<std::vector<SeriesSummary>>(request_of(LibraryReader::kDicomSeries, path));
+  for (SeriesSummary& one : series) {
+    one.name = visible_text(one.name);
+    one.uid = visible_text(one.uid);
+    one.kind = visible_text(one.kind);
+  }
+  return series;
+}
 
 void check_readable(const std::filesystem::path& path) { check_input_file(path); }
 

@@ -9,12 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/io/amr_cells.h"
-#include "core/io/grid_numbers.h"
-#include "core/io/hdf5_handle.h"
-#include "core/io/input_file.h"
+#include "core/io/hdf5_layout_reader.h"
+#include "core/io/hdf5_meshes.h"
 #include "core/io/mesh_builder.h"
 #include "core/io/mesh_file.h"
-#include "core/io/volume_stack.h"
 
 namespace adamas::io {
 
@@ -28,145 +26,6 @@ constexpr const char* kVtkHdf = "VTKHDF";
 constexpr const char* kLevels = "refine level";
 constexpr const char* kBoxes = "bounding box";
 constexpr const char* kNodeTypes = "node type";
-
-/// A data set of numbers.
-struct Numbers {
-  std::string type;  ///< in the file: "int32", "float64"
-  std::vector<hsize_t> size;
-  std::vector<double> values;
-
-  [[nodiscard]] hsize_t row() const { return values.size() / std::max<hsize_t>(size[0], 1); }
-};
-
-/// Reads files of HDF5 with meshes, in the child.
-class Hdf5Meshes {
- public:
-  explicit Hdf5Meshes(const std::filesystem::path& path)
-      : name_(path.string()), bytes_(check_input_file(path)), file_(open_hdf5(name_)) {}
-
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] hid_t file() const { return file_.id(); }
-
-  /// Whether there is an object, each group of whose path is there too.
-  [[nodiscard]] bool has(const std::string& path) const {
-    for (std::size_t end = path.find('/'); end != std::string::npos; end = path.find('/', end + 1)) {
-      if (H5Lexists(file(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
-    }
-    return H5Lexists(file(), path.c_str(), H5P_DEFAULT) > 0;
-  }
-
-  /// Finds the type and the size of a data set, without its values; none if it has no numbers.
-  [[nodiscard]] std::optional<Numbers> look_at(const std::string& path) const {
-    const Hdf5Handle set(H5Dopen2(file(), path.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!set.good()) return {};
-    const Hdf5Handle space(H5Dget_space(set.id()), H5Sclose), type(H5Dget_type(set.id()), H5Tclose);
-    const auto stored = type.good() ? hdf5_stored_type(type.id()) : std::nullopt;
-    const int axes = space.good() ? H5Sget_simple_extent_ndims(space.id()) : 0;
-    if (!stored || axes < 1 || axes > 4) return {};
-    Numbers result;
-    result.type = stored_name(*stored);
-    result.size.resize(static_cast<std::size_t>(axes));
-    H5Sget_simple_extent_dims(space.id(), result.size.data(), nullptr);
-    return result;
-  }
-
-  /// Reads a data set. Throws Error if it is none of numbers, or larger than the file can hold.
-  [[nodiscard]] Numbers read(const std::string& path) const {
-    std::optional<Numbers> found = look_at(path);
-    if (!found) fail("{}: {}: expected numbers, found none", name_, path);
-    double count = 1;
-    for (const hsize_t n : found->size) count *= static_cast<double>(n);
-    const Hdf5Handle set(H5Dopen2(file(), path.c_str(), H5P_DEFAULT), H5Dclose);
-    // Numbers that were never written would all be read as the fill value.
-    const hsize_t held = std::min<hsize_t>(H5Dget_storage_size(set.id()), bytes_);
-    if (count * static_cast<double>(stored_bytes(*find_stored_type(found->type))) >
-        kMostPacked * static_cast<double>(held))
-      fail("{}: {}: expected {:g} numbers, found {} bytes of them", name_, path, count, held);
-    found->values.resize(static_cast<std::size_t>(count));
-    const Hdf5Handle layout(H5Dget_create_plist(set.id()), H5Pclose);
-    if (!layout.good() || !hdf5_holds_values(layout.id()))
-      fail("{}: {}: expected numbers in the file itself, found them in others", name_, path);
-    if (H5Dread(set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, found->values.data()) < 0)
-      fail("{}: {}: expected whole numbers, found corrupt or missing ones", name_, path);
-    return std::move(*found);
-  }
-
-  /// The text of an attribute, without blanks at its end; empty if there is none.
-  [[nodiscard]] std::string text(const std::string& path, const std::string& attribute) const {
-    if (H5Aexists_by_name(file(), path.c_str(), attribute.c_str(), H5P_DEFAULT) <= 0) return {};
-    const Hdf5Handle own(H5Aopen_by_name(file(), path.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose);
-    const Hdf5Handle type(own.good() ? H5Aget_type(own.id()) : -1, H5Tclose);
-    const Hdf5Handle space(own.good() ? H5Aget_space(own.id()) : -1, H5Sclose);
-    if (!type.good() || H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0 ||
-        H5Sget_simple_extent_npoints(space.id()) != 1)
-      return {};
-    if (H5Tget_size(type.id()) > kLongestText) return {};
-    std::string result(H5Tget_size(type.id()), '\0');
-    if (H5Aread(own.id(), type.id(), result.data()) < 0) return {};
-    result.resize(std::min(result.find('\0'), result.size()));
-    while (!result.empty() && result.back() == ' ') result.pop_back();
-    return result;
-  }
-
-  /// The numbers of an attribute. Throws Error unless it has `count` finite ones.
-  [[nodiscard]] std::vector<double> attribute(const std::string& path, const char* name,
-                                              std::size_t count) const {
-    std::vector<double> result(count);
-    bool good = H5Aexists_by_name(file(), path.c_str(), name, H5P_DEFAULT) > 0;
-    if (good) {
-      const Hdf5Handle own(H5Aopen_by_name(file(), path.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-      const Hdf5Handle space(own.good() ? H5Aget_space(own.id()) : -1, H5Sclose),
-          type(own.good() ? H5Aget_type(own.id()) : -1, H5Tclose);
-      good = space.good() && type.good() && hdf5_stored_type(type.id()).has_value() &&
-             H5Sget_simple_extent_npoints(space.id()) == static_cast<hssize_t>(count) &&
-             H5Aread(own.id(), H5T_NATIVE_DOUBLE, result.data()) >= 0 &&
-             std::ranges::all_of(result, [](double v) { return std::isfinite(v); });
-    }
-    if (!good) fail("{}: {}: expected {} numbers as attribute '{}', found none", name_, path, count, name);
-    return result;
-  }
-
-  /// The names in a group, in natural order.
-  [[nodiscard]] std::vector<std::string> names(const std::string& group) const {
-    std::vector<std::string> result;
-    const Hdf5Handle own(H5Gopen2(file(), group.c_str(), H5P_DEFAULT), H5Gclose);
-    const auto add = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-      static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-      return 0;
-    };
-    if (own.good()) H5Literate(own.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &result);
-    std::ranges::sort(result, natural_less);
-    return result;
-  }
-
-  /// The time that a group states; 0 if it states none.
-  [[nodiscard]] double time_of(const std::string& group) const {
-    const Hdf5Handle own(H5Gopen2(file(), group.c_str(), H5P_DEFAULT), H5Gclose);
-    const std::vector<double> times = own.good() ? hdf5_times(own.id()) : std::vector<double>();
-    return times.size() == 1 ? times[0] : 0;
-  }
-
- private:
-  static constexpr std::size_t kLongestText = 4096;
-  /// Deflate never makes data smaller than this part.
-  static constexpr double kMostPacked = 1100;
-
-  std::string name_;
-  std::size_t bytes_;
-  Hdf5Handle file_;
-};
-
-void add_array(std::string name, Centering centering, const Numbers& numbers, int components,
-               MeshFile& file) {
-  GridArray array;
-  array.name = std::move(name);
-  array.type = numbers.type;
-  array.centering = centering;
-  array.components = components;
-  set_numbers(std::span(numbers.values), array);
-  file.arrays.push_back(std::move(array));
-}
 
 /// Reads a mesh of hexahedra or tetrahedra with series of values, as Truchas writes it: tetrahedra, wedges
 /// and pyramids are hexahedra with points that are the same.
@@ -182,16 +41,22 @@ class TruchasReader {
     return groups;
   }
 
+  [[nodiscard]] std::vector<double> times() const {
+    std::vector<double> result;
+    for (const std::string& group : steps()) result.push_back(source_.time_of(group).value_or(0));
+    return result;
+  }
+
   MeshFile run(std::optional<std::uint64_t> time) {
     file_.kind = "Truchas HDF5";
     add_cells();
     const std::vector<std::string> groups = steps();
     if (time.value_or(0) >= std::max<std::size_t>(groups.size(), 1))
       fail_for_time(source_.name(), groups.size(), *time);
+    file_.times = times();
     if (!groups.empty()) {
       const std::string& group = groups[time.value_or(groups.size() - 1)];
-      if (!time && groups.size() > 1)
-        file_.add_remark(last_time_remark(groups.size(), source_.time_of(group)));
+      if (!time && groups.size() > 1) file_.add_remark(last_time_remark(groups.size(), file_.times.back()));
       for (const std::string& set : source_.names(group)) add_set(group + "/" + set, set);
     }
     if (source_.has(kBlocks)) add_blocks(source_.read(kBlocks));
@@ -206,8 +71,11 @@ class TruchasReader {
     const std::size_t corners = cells.row();
     if (corners != 4 && corners != 8)
       fail("{}: {}: expected cells of 4 or 8 points, found {}", source_.name(), kCells, corners);
-    point_count_ = points.size[0];
-    const std::vector<std::uint32_t> numbers = add_points(points);
+    std::vector<Vec3> given;
+    for (std::size_t p = 0; p < points.size[0]; ++p)
+      given.push_back({points.values[3 * p], points.values[3 * p + 1], points.values[3 * p + 2]});
+    points_ = add_merged_points(fmt::format("{}: {}", source_.name(), kPoints), given, file_);
+    const std::vector<std::uint32_t>& numbers = points_.numbers;
     std::vector<std::uint32_t> face;
     for (std::size_t c = 0; c < cells.size[0]; ++c) {
       for (const auto& places : corners == 8 ? kHexahedronFaces : kTetrahedronFaces) {
@@ -226,54 +94,24 @@ class TruchasReader {
     }
   }
 
-  /// Adds the points, of which those at one place are one: meshes are cut along internal interfaces. Returns
-  /// their numbers in the mesh.
-  std::vector<std::uint32_t> add_points(const Numbers& points) {
-    std::vector<Vec3> all;
-    Box3 box;
-    for (std::size_t p = 0; p < points.size[0]; ++p) {
-      all.push_back({points.values[3 * p], points.values[3 * p + 1], points.values[3 * p + 2]});
-      if (!is_finite(all.back()))
-        fail("{}: {}: expected finite coordinates, found others", source_.name(), kPoints);
-      box.extend(all.back());
-    }
-    PointMerger merger(PointMerger::kCoincident * std::max(box.diagonal(), 1e-300), file_.points);
-    std::vector<std::uint32_t> numbers;
-    for (const Vec3& p : all) {
-      const std::size_t before = file_.points.size();
-      numbers.push_back(merger.number(p));
-      if (file_.points.size() > before) taken_points_.push_back(numbers.size() - 1);
-    }
-    return numbers;
-  }
-
   /// Adds the values of cells or points at a time, and passes over others.
   void add_set(const std::string& path, const std::string& set) {
     const auto found = source_.look_at(path);
     if (!found || found->size.size() > 2) return;
-    const hsize_t components = found->size.size() == 2 ? found->size[1] : 1;
+    const std::uint64_t components = found->size.size() == 2 ? found->size[1] : 1;
     const bool of_points = source_.text(path, "FIELDTYPE") == "NODE";
     if (components < 1 || components > kMostComponents ||
-        found->size[0] != (of_points ? point_count_ : file_.cell_ends.size()))
+        found->size[0] != (of_points ? points_.numbers.size() : file_.cell_ends.size()))
       return;
     std::vector<std::string> names;
-    for (hsize_t c = 1; components > 1 && c <= components; ++c)
+    for (std::uint64_t c = 1; components > 1 && c <= components; ++c)
       names.push_back(source_.text(path, "FIELDNAME" + std::to_string(c)));
     if (set == "VOF") return add_fractions(source_.read(path), names);
     const std::string own = source_.text(path, "FIELDNAME");
     const Numbers all = source_.read(path);
     add_array(own.empty() ? set : own, of_points ? Centering::kPoints : Centering::kCells,
-              of_points ? values_of_taken(all) : all, static_cast<int>(components), file_);
+              of_points ? rows_of(all, points_.taken) : all, static_cast<int>(components), file_);
     if (std::ranges::find(names, "") == names.end()) file_.arrays.back().component_names = names;
-  }
-
-  /// The values of the points that the mesh has.
-  [[nodiscard]] Numbers values_of_taken(const Numbers& all) const {
-    Numbers own{all.type, {taken_points_.size()}, {}};
-    for (const std::size_t p : taken_points_)
-      own.values.insert(own.values.end(), all.values.begin() + static_cast<std::ptrdiff_t>(p * all.row()),
-                        all.values.begin() + static_cast<std::ptrdiff_t>((p + 1) * all.row()));
-    return own;
   }
 
   /// Adds the volume fractions of materials, one in each component, as arrays that are found by their names.
@@ -300,12 +138,11 @@ class TruchasReader {
     for (const double number : numbers.values) file_.block_of_cell.push_back(blocks.at(number));
   }
 
-  static constexpr hsize_t kMostComponents = 4096;  // of an array
+  static constexpr std::uint64_t kMostComponents = 4096;  // of an array
   static constexpr std::size_t kMostBlocks = 65535;
 
   const Hdf5Meshes& source_;
-  std::size_t point_count_ = 0;            // in the file
-  std::vector<std::size_t> taken_points_;  // the first of those at each place
+  MergedPoints points_;
   MeshFile file_;
 };
 
@@ -410,7 +247,7 @@ class FlashReader {
   const std::string& name_;
   Numbers levels_, types_, boxes_;
   std::vector<std::string> sets_;
-  std::vector<hsize_t> size_;              // of the variables: blocks, z, y, x
+  std::vector<std::uint64_t> size_;        // of the variables: blocks, z, y, x
   std::map<double, std::size_t> numbers_;  // of the levels that have blocks, the coarsest first
   std::vector<std::size_t> taken_;         // the blocks that none covers
   AmrBlocks amr_;
@@ -496,7 +333,7 @@ class VtkHdfAmr {
     for (const std::string& name : source_.has(first) ? source_.names(first) : std::vector<std::string>()) {
       if (name == "vtkGhostType") continue;
       Numbers joined;
-      hsize_t row = 0;
+      std::uint64_t row = 0;
       std::size_t block = 0;
       for (std::size_t level = 0; level < levels_; ++level) {
         const std::string path = group(level) + "/" + kind + "/" + name;
@@ -545,6 +382,7 @@ class VtkHdfAmr {
 
 MeshFile read_hdf5_mesh(const std::filesystem::path& path, std::optional<std::uint64_t> time) {
   const Hdf5Meshes source(path);
+  if (hdf5_layout().of_cells()) return read_laid_out_mesh(source, hdf5_layout(), time);
   if (source.has(kPoints) && source.has(kCells)) return TruchasReader(source).run(time);
   if (source.has(kVtkHdf) && source.text(kVtkHdf, "Type") == "OverlappingAMR") {
     if (time.value_or(0) != 0) fail_for_time(source.name(), 1, *time);
@@ -558,10 +396,8 @@ MeshFile read_hdf5_mesh(const std::filesystem::path& path, std::optional<std::ui
 
 std::vector<double> hdf5_mesh_times(const std::filesystem::path& path) {
   const Hdf5Meshes source(path);
-  std::vector<double> times;
-  if (!source.has(kPoints)) return times;
-  for (const std::string& group : TruchasReader(source).steps()) times.push_back(source.time_of(group));
-  return times;
+  if (hdf5_layout().of_cells()) return laid_out_times(source, hdf5_layout());
+  return source.has(kPoints) ? TruchasReader(source).times() : std::vector<double>();
 }
 
 }  // namespace adamas::io

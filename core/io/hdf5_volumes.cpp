@@ -13,6 +13,7 @@
 #include "core/data/stored_type.h"
 #include "core/io/grid_file.h"
 #include "core/io/hdf5_handle.h"
+#include "core/io/hdf5_layout_reader.h"
 #include "core/io/hdf5_numbers.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
@@ -392,7 +393,46 @@ void set_places(const GridSet& set, GridFile& file) {
 
 }  // namespace
 
+namespace {
+
+/// The centering of numbers on a grid with these nodes; none where they are of another one.
+std::optional<Centering> centering_of(const Sizes& sizes, const std::array<std::vector<double>, 3>& nodes) {
+  for (const std::size_t less : {std::size_t{0}, std::size_t{1}}) {
+    bool fits = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) fits = fits && sizes[axis] + less == nodes[axis].size();
+    if (fits) return less == 0 ? Centering::kPoints : Centering::kCells;
+  }
+  return {};
+}
+
+/// Reads the data sets on the grid whose axes a layout names.
+GridFile read_laid_out_grid(const std::filesystem::path& path) {
+  const Hdf5Meshes source(path);
+  GridFile result;
+  result.kind = "HDF5 grid";
+  result.nodes = read_laid_out_axes(source, hdf5_layout());
+  if (result.nodes[2].empty())
+    fail("{}: --hdf5: expected axes x, y and z of a grid, found none of z", source.name());
+  const Hdf5Handle file = open_hdf5(source.name());
+  for (const std::string& one : source.data_sets("/")) {
+    const std::size_t axes = source.look_at(one)->size.size();
+    if (axes < 3 || axes > 4) continue;
+    const GridSet set(source.name(), file.id(), one);
+    const auto centering = centering_of(set.sizes(), result.nodes);
+    if (!centering) continue;
+    result.arrays.push_back(set.read());
+    result.arrays.back().centering = *centering;
+  }
+  if (result.arrays.empty())
+    fail("{}: --hdf5: expected data sets of {} x {} x {} numbers, or of one less along all axes, found none",
+         source.name(), result.nodes[2].size(), result.nodes[1].size(), result.nodes[0].size());
+  return result;
+}
+
+}  // namespace
+
 GridFile read_hdf5_grid(const std::filesystem::path& path) {
+  if (hdf5_layout().of_grid()) return read_laid_out_grid(path);
   const std::string name = path.string();
   const Hdf5Handle file = open_hdf5(name);
   constexpr std::size_t kMost = 1000;

@@ -118,8 +118,6 @@ std::string name_unread_format(const std::filesystem::path& path) {
   const std::size_t size = FileHandle::open(path)->read_some(0, std::as_writable_bytes(std::span(bytes)));
   const std::string_view beginning(bytes.data(), size);
   constexpr const char* kMeshio = "'meshio convert' makes a .vtu of it";
-  if (beginning.starts_with(std::string_view("spydata", 7)))
-    return "a dump of CTH: ParaView reads it and saves .vthb";
   if (beginning.starts_with("MFEM")) return "a mesh of MFEM, which can save .vtu itself";
   if (beginning.starts_with("$MeshFormat")) return fmt::format("a mesh of Gmsh: {}", kMeshio);
   if (beginning.starts_with("*HEADING") || beginning.starts_with("*Heading"))

@@ -91,7 +91,7 @@ InterfaceMesh read_labelled_network(const std::filesystem::path& path,
   const std::string text = read_file(path);
   const LabelledNetwork network = parse_labelled_network(text, path.string());
   std::map<std::int64_t, std::string> names;
-  if (!region_names.empty()) names = parse_region_names(read_file(region_names), region_names.string());
+  if (!region_names.empty()) names = parse_region_table(read_file(region_names), region_names.string()).names;
   return to_interface_mesh(network, names, path.string());
 }
 

@@ -148,9 +148,10 @@ RegionLine table_line(std::string_view rest) {
   return line;
 }
 
-/// Reads all lines of regions by their labels.
-std::map<std::int64_t, RegionLine> parse_regions(std::string_view text, const std::string& name) {
-  std::map<std::int64_t, RegionLine> regions;
+}  // namespace
+
+RegionTable parse_region_table(std::string_view text, const std::string& name) {
+  RegionTable regions;
   std::size_t number = 0;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -170,28 +171,12 @@ std::map<std::int64_t, RegionLine> parse_regions(std::string_view text, const st
       fail("{}: line {}: expected a label and its region's name, found '{}'", name, number,
            printable(line, 20));
     }
-    if (!regions.try_emplace(label, region).second) {
+    if (!regions.names.try_emplace(label, region.name).second) {
       fail("{}: line {}: expected one name for each label, found a second for {}", name, number, label);
     }
+    if (region.colour) regions.colours.emplace(label, *region.colour);
   }
   return regions;
-}
-
-}  // namespace
-
-std::map<std::int64_t, std::string> parse_region_names(std::string_view text, const std::string& name) {
-  std::map<std::int64_t, std::string> names;
-  for (const auto& [label, region] : parse_regions(text, name)) names.emplace(label, region.name);
-  return names;
-}
-
-std::map<std::int64_t, std::array<double, 3>> parse_region_colours(std::string_view text,
-                                                                   const std::string& name) {
-  std::map<std::int64_t, std::array<double, 3>> colours;
-  for (const auto& [label, region] : parse_regions(text, name)) {
-    if (region.colour) colours.emplace(label, *region.colour);
-  }
-  return colours;
 }
 
 namespace {

@@ -23,14 +23,16 @@ struct LabelledNetwork {
 /// points and indices in range.
 LabelledNetwork parse_labelled_network(std::string_view text, const std::string& name);
 
-/// Reads the names of regions from lines "LABEL NAME", or from a table of labels of ITK-SNAP, whose names are
-/// in quotes behind six numbers; blank lines and those that begin with '#' or '(' are skipped.
-std::map<std::int64_t, std::string> parse_region_names(std::string_view text, const std::string& name);
+/// What a text says of regions, by their labels.
+struct RegionTable {
+  std::map<std::int64_t, std::string> names;
+  std::map<std::int64_t, std::array<double, 3>> colours;  ///< red, green and blue from 0 to 1
+};
 
-/// Reads the colours of a table of ITK-SNAP from the same text: red, green and blue from 0 to 1. Labels whose
-/// opacity is 0, and those of other lines, have none.
-std::map<std::int64_t, std::array<double, 3>> parse_region_colours(std::string_view text,
-                                                                   const std::string& name);
+/// Reads regions from lines "LABEL NAME", or from a table of labels of ITK-SNAP, whose names are in quotes
+/// behind six numbers, the first three of them a colour; blank lines and those that begin with '#' or '(' are
+/// skipped. Labels whose opacity is 0, and those of other lines, have no colour.
+RegionTable parse_region_table(std::string_view text, const std::string& name);
 
 /// Whether the first label of a triangle is the region that its right-hand normal points to. Sources differ,
 /// so the data decide: the closed regions, or all if none is closed, have positive volumes except for the

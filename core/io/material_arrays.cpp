@@ -1,13 +1,13 @@
 #include "core/io/material_arrays.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/base/sort_unique.h"
 #include "core/io/array_names.h"
@@ -123,15 +123,6 @@ NamedLabels name_labels(const std::string& source, GridArray array, const LabelN
 /// Returns whether an array is the labels that write_multi_material_data writes.
 bool is_written_labels(const GridArray& array, const std::vector<std::string>& material_names) {
   return array.name == kWrittenLabels && array.integral() && array.components == 1 && !material_names.empty();
-}
-
-/// Quotes a name as one word of a command line.
-std::string as_argument(const std::string& name) {
-  const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_-./:,+").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  return plain ? name : "'" + name + "'";
 }
 
 }  // namespace

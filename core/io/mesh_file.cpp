@@ -15,11 +15,13 @@
 #include "core/base/sort_unique.h"
 #include "core/data/unstructured_mesh.h"
 #include "core/io/file_handle.h"
+#include "core/io/hdf5_layout.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/mesh_builder.h"
 #include "core/io/reader_program.h"
 #include "core/io/sent_grids.h"
+#include "core/io/spy_dump.h"
 #include "core/io/vtk_checks.h"
 
 namespace adamas::io {
@@ -61,7 +63,7 @@ InputFormat cells_format() {
   return {.name = "cells of a mesh",
           .kind = InputKind::kCells,
           .endings = ".vts .pvtu .pvts .vtm .vth .foam .exo .cgns .silo .pdb",
-          .more_endings = ".vthb .e .ex2 .exii .g .gen"};
+          .more_endings = ".vthb .e .ex2 .exii .g .gen .spcth-timeseries"};
 }
 
 namespace {
@@ -96,6 +98,7 @@ Hdf5Origin hdf5_origin(const std::filesystem::path& path) {
   if (file->read_some(0, std::as_writable_bytes(std::span(magic))) != magic.size() ||
       std::string_view(magic.data(), magic.size()) != "\x89HDF\r\n\x1a\n")
     return Hdf5Origin::kNone;
+  if (hdf5_layout().of_cells()) return Hdf5Origin::kMesh;
   constexpr std::size_t kSearched = 4 << 20;
   std::string bytes(kSearched, '\0');
   const std::uint64_t size = std::filesystem::file_size(path);
@@ -118,6 +121,7 @@ bool is_mesh_by_header(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, code)) return false;
   const std::string extension = file_extension(path);
   if (extension == ".vtk") return is_legacy_mesh(path);
+  if (is_spy_dump(path)) return true;
   return extension == ".vtu" ? is_foreign_vtu(path) : hdf5_origin(path) != Hdf5Origin::kNone;
 }
 

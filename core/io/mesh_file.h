@@ -24,6 +24,7 @@ struct MeshFile {
   std::vector<std::int32_t> block_of_cell;  ///< the block of each cell then; else empty
   std::vector<std::string> material_names;  ///< as in GridFile
   std::vector<MeshSet> sets;                ///< side sets and node sets
+  std::vector<double> times;                ///< all that the file has; empty where it states none
   std::string remark;                       ///< what else the file holds and is not read; usually empty
 
   void add_remark(const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; }
@@ -33,7 +34,7 @@ struct MeshFile {
 enum class Hdf5Origin : std::uint8_t {
   kNone,
   kSilo,
-  kMesh,  ///< Truchas, FLASH, or AMR of VTKHDF
+  kMesh,  ///< Truchas, FLASH, AMR of VTKHDF, or any that set_hdf5_layout() has described
   kVtk,   ///< an unstructured grid of VTKHDF
 };
 
@@ -60,8 +61,8 @@ std::vector<double> mesh_times_with_vtk(const std::filesystem::path& path);
 /// material.
 MeshFile read_silo_mesh(const std::filesystem::path& path);
 
-/// Reads, in this process, a mesh of Truchas, at a time as read_mesh_file does, blocks of FLASH, or
-/// overlapping AMR of VTKHDF.
+/// Reads, in this process, a mesh as set_hdf5_layout() has described it or, without that, a mesh of Truchas,
+/// at a time as read_mesh_file does, blocks of FLASH, or overlapping AMR of VTKHDF.
 MeshFile read_hdf5_mesh(const std::filesystem::path& path, std::optional<std::uint64_t> time = {});
 std::vector<double> hdf5_mesh_times(const std::filesystem::path& path);
 

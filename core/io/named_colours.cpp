@@ -110,9 +110,9 @@ NamedColours find_named_colours(const std::filesystem::path& file,
   NamedColours result;
   LabelNames names;
   if (!region_names.empty()) {
-    const std::string text = read_file(region_names);
-    names = parse_region_names(text, region_names.string());
-    add_colours(parse_region_colours(text, region_names.string()), names, {}, result);
+    const RegionTable table = parse_region_table(read_file(region_names), region_names.string());
+    names = table.names;
+    add_colours(table.colours, names, {}, result);
   }
   if (file.empty() || is_file_pattern(file) || std::filesystem::is_directory(file)) return result;
   const std::string extension = file_extension(file);

@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 
+#include "adamas/files.h"
 #include "core/base/error.h"
 #include "core/io/framed_bytes.h"
 #include "core/io/reader_program.h"
@@ -22,6 +23,8 @@ void run_reader(const ReaderRequest& request, ByteSink& sink) {
     case LibraryReader::kGrid:
     case LibraryReader::kHdf5Grid:
       return send_grid(request, sink);
+    case LibraryReader::kDicomSeries:
+      return send_dicom_series(request, sink);
     case LibraryReader::kMesh:
       return send_mesh(request, sink);
     case LibraryReader::kCells:
@@ -57,6 +60,7 @@ int run_reader_program() {
       fail("expected the program adamas-reader of version {}, found that of {}", version, reader_version());
     source.get(request);
     source.expect_end();
+    set_hdf5_layout(request.layout);
     run_reader(request, sink);
     sink.finish();
     return 0;

@@ -19,7 +19,9 @@
 #include "core/base/sanitizers.h"
 #include "core/base/unnamed_file.h"
 #include "core/io/array_file_head.h"
+#include "core/io/hdf5_layout.h"
 #include "core/io/input_file.h"
+#include "core/io/spy_dump.h"
 
 namespace adamas::io {
 
@@ -89,6 +91,9 @@ ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path
   for (const char* whole : {".pvti", ".pvtr", ".pvtu", ".pvts", ".vtm", ".vth", ".vthb", ".silo", ".pdb"}) {
     if (extension == whole) request.input_bytes = size_of_folder(path.parent_path());
   }
+  const bool of_cells = reader == LibraryReader::kCells || reader == LibraryReader::kCellTimes;
+  if (of_cells && is_spy_dump(path)) request.input_bytes = size_of_folder(path.parent_path());
+  request.layout = hdf5_layout_texts();
   return request;
 }
 

@@ -18,6 +18,7 @@ namespace adamas::io {
 enum class LibraryReader : std::uint8_t {
   kGrid,         ///< a grid file by VTK or libtiff
   kHdf5Grid,     ///< all numeric data sets of a file by HDF5
+  kDicomSeries,  ///< the series in a folder of DICOM
   kMesh,         ///< .vtu or .vtp by VTK
   kCells,        ///< the cells of a mesh by VTK, Silo or HDF5
   kCellTimes,    ///< the times of a file of cells
@@ -39,13 +40,14 @@ struct ReaderRequest {
   Vec3 spacing{1, 1, 1}, origin{};      ///< spacing and origin of a stack
   std::optional<std::uint64_t> time{};  ///< the number of a time, if a volume has several
   std::vector<std::string> arrays{};    ///< the names of the arrays in a file of arrays
+  std::vector<std::string> layout{};    ///< of files of HDF5 (set_hdf5_layout())
 };
 
 template <>
-inline constexpr auto kSentMembers<ReaderRequest> =
-    std::tuple{&ReaderRequest::reader, &ReaderRequest::name,  &ReaderRequest::input_bytes,
-               &ReaderRequest::paths,  &ReaderRequest::array, &ReaderRequest::spacing,
-               &ReaderRequest::origin, &ReaderRequest::time,  &ReaderRequest::arrays};
+inline constexpr auto kSentMembers<ReaderRequest> = std::tuple{
+    &ReaderRequest::reader, &ReaderRequest::name,    &ReaderRequest::input_bytes, &ReaderRequest::paths,
+    &ReaderRequest::array,  &ReaderRequest::spacing, &ReaderRequest::origin,      &ReaderRequest::time,
+    &ReaderRequest::arrays, &ReaderRequest::layout};
 
 template <>
 inline constexpr auto kSentMembers<NamedArray> =
@@ -83,6 +85,7 @@ int run_reader_program();
 /// The readers, which run in adamas-reader. Those of grids and of cells are in senders.cpp, so that their
 /// libraries are linked for it alone; each other one is in the file of the function that receives its data.
 void send_grid(const ReaderRequest& request, ByteSink& sink);
+void send_dicom_series(const ReaderRequest& request, ByteSink& sink);
 void send_mesh(const ReaderRequest& request, ByteSink& sink);
 void send_cells(const ReaderRequest& request, ByteSink& sink);
 void send_polygons(const ReaderRequest& request, ByteSink& sink);

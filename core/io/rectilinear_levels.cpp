@@ -170,12 +170,68 @@ class LevelFinder {
   AmrBlocks amr_;
 };
 
+/// Blocks of one level, whose cells are those of one grid.
+struct OneLevel {
+  AmrBlocks amr;                            ///< with cells of the size 1
+  std::array<std::vector<double>, 3> axes;  ///< the places of the grid's nodes
+};
+
+OneLevel blocks_of_grid(const std::string& name, const std::vector<RectilinearBlock>& blocks, bool flat) {
+  OneLevel result;
+  result.amr.spacing = {{1, 1, 1}};
+  result.amr.flat = flat;
+  result.amr.blocks.assign(blocks.size(), {0, {}, {1, 1, 1}, {}});
+  for (std::size_t axis = 0; axis < (flat ? 2u : 3u); ++axis) {
+    std::vector<double>& places = result.axes[axis];
+    double least = std::numeric_limits<double>::infinity();
+    for (const RectilinearBlock& block : blocks) {
+      const auto& nodes = block.nodes[axis];
+      places.insert(places.end(), nodes.begin(), nodes.end());
+      for (std::size_t i = 1; i < nodes.size(); ++i) least = std::min(least, nodes[i] - nodes[i - 1]);
+    }
+    // Nodes of two blocks at one place differ by rounding.
+    const double apart = 0.1 * least;
+    std::ranges::sort(places);
+    const auto same = [apart](double a, double b) { return b - a < apart; };
+    places.erase(std::unique(places.begin(), places.end(), same), places.end());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const auto& nodes = blocks[b].nodes[axis];
+      const auto begin = std::ranges::lower_bound(places, nodes.front() - apart);
+      const auto cells = static_cast<std::int64_t>(nodes.size()) - 1;
+      bool fits = places.end() - begin > cells;
+      for (std::ptrdiff_t i = 0; fits && i <= cells; ++i)
+        fits = std::abs(begin[i] - nodes[static_cast<std::size_t>(i)]) <= 2 * apart;
+      if (!fits) fail("{}: expected blocks whose cells are those of one grid, found others", name);
+      result.amr.blocks[b].begin[axis] = begin - places.begin();
+      result.amr.blocks[b].size[axis] = cells;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<AmrBlocks> find_rectilinear_levels(const std::string& name,
                                                  const std::vector<RectilinearBlock>& blocks, bool flat,
                                                  bool stated) {
   return LevelFinder(name, blocks, flat, stated).run();
+}
+
+AmrSources add_rectilinear_cells(const std::string& name, const std::vector<RectilinearBlock>& blocks,
+                                 bool flat, bool stated, MeshFile& file) {
+  if (stated) {
+    if (const auto levels = find_rectilinear_levels(name, blocks, flat, true))
+      return add_amr_cells(name, *levels, file);
+  }
+  const OneLevel grid = blocks_of_grid(name, blocks, flat);
+  AmrSources sources = add_amr_cells(name, grid.amr, file);
+  for (Vec3& p : file.points) {
+    for (std::size_t axis = 0; axis < (flat ? 2u : 3u); ++axis) {
+      double& at = p[static_cast<int>(axis)];
+      at = grid.axes[axis][static_cast<std::size_t>(std::llround(at))];
+    }
+  }
+  return sources;
 }
 
 }  // namespace adamas::io

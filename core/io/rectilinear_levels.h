@@ -25,4 +25,10 @@ std::optional<AmrBlocks> find_rectilinear_levels(const std::string& name,
                                                  const std::vector<RectilinearBlock>& blocks, bool flat,
                                                  bool stated);
 
+/// Appends the cells of blocks to an empty `file`, as add_amr_cells does: of levels where the file says so
+/// and they have cells of several sizes, else of parts of one grid, which may be uneven. Throws Error, which
+/// begins with `name`, where they are neither.
+AmrSources add_rectilinear_cells(const std::string& name, const std::vector<RectilinearBlock>& blocks,
+                                 bool flat, bool stated, MeshFile& file);
+
 }  // namespace adamas::io

@@ -15,6 +15,7 @@
 #include "core/io/mesh_file.h"
 #include "core/io/reader_program.h"
 #include "core/io/sent_grids.h"
+#include "core/io/spy_dump.h"
 #include "core/io/volume_import.h"
 #include "core/io/zarr_reader.h"
 
@@ -34,6 +35,10 @@ void send_grid(const ReaderRequest& request, ByteSink& sink) {
   if (request.reader == LibraryReader::kHdf5Grid) return sink.put(read_hdf5_grid(path));
   sink.put(request.arrays.empty() ? read_grid_in_process(path, request.array, request.time)
                                   : read_dicom_series(path, request.arrays));
+}
+
+void send_dicom_series(const ReaderRequest& request, ByteSink& sink) {
+  sink.put(list_dicom_series(request.paths.front()));
 }
 
 namespace {
@@ -132,9 +137,11 @@ void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
 
 void send_cells(const ReaderRequest& request, ByteSink& sink) {
   const std::filesystem::path path = request.paths.front();
+  const bool times = request.reader == LibraryReader::kCellTimes;
+  if (is_spy_dump(path))
+    return times ? sink.put(spy_dump_times(path)) : sink.put(read_spy_dump(path, request.time));
   const Hdf5Origin origin = hdf5_origin(path);
-  if (request.reader == LibraryReader::kCellTimes)
-    return sink.put(origin == Hdf5Origin::kMesh ? hdf5_mesh_times(path) : mesh_times_with_vtk(path));
+  if (times) return sink.put(origin == Hdf5Origin::kMesh ? hdf5_mesh_times(path) : mesh_times_with_vtk(path));
   switch (origin) {
     case Hdf5Origin::kSilo:
       return sink.put(read_silo_mesh(path));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "adamas/file_summary.h"
 #include "core/io/framed_bytes.h"
 #include "core/io/grid_file.h"
 #include "core/io/mesh_file.h"
@@ -26,7 +27,12 @@ template <>
 inline constexpr auto kSentMembers<MeshFile> =
     std::tuple{&MeshFile::kind,      &MeshFile::points, &MeshFile::face_points,   &MeshFile::face_ends,
                &MeshFile::cell_ends, &MeshFile::arrays, &MeshFile::blocks,        &MeshFile::material_names,
-               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell, &MeshFile::sets};
+               &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell, &MeshFile::sets,
+               &MeshFile::times};
+
+template <>
+inline constexpr auto kSentMembers<SeriesSummary> =
+    std::tuple{&SeriesSummary::name, &SeriesSummary::uid, &SeriesSummary::kind, &SeriesSummary::files};
 
 /// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold
 /// all characters.

@@ -599,7 +599,9 @@ MeshFile read_timed(const std::string& name, const TimedFormat& format, std::opt
     if (!time && times.size() > 1) remark = last_time_remark(times.size(), chosen);
   }
   messages.check(name);
-  return collected(name, format.kind, reader->GetOutputDataObject(0), remark);
+  MeshFile file = collected(name, format.kind, reader->GetOutputDataObject(0), remark);
+  file.times = times;
+  return file;
 }
 
 }  // namespace

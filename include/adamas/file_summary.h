@@ -53,7 +53,20 @@ struct FileSummary {
   std::vector<ArraySummary> arrays;
   std::vector<SetSummary> sets;  ///< side sets, then node sets
   bool flat = false;             ///< whether it is a mesh of two dimensions
+  std::vector<double> times;     ///< of a file of cells that states some (mesh_times()); else empty
 };
+
+/// A series of images in a folder.
+struct SeriesSummary {
+  std::string name;       ///< its description; the UID where it has none, or one that another series has too
+  std::string uid;        ///< its UID
+  std::string kind;       ///< its modality: "CT", "MR", "SEG"; mostly not empty
+  std::size_t files = 0;  ///< how many files it has
+};
+
+/// The series in a folder of DICOM, by their UIDs; empty for other paths. Throws Error, with the file's name,
+/// where a file is damaged.
+std::vector<SeriesSummary> folder_series(const std::filesystem::path& path);
 
 /// Throws Error where a file to read is missing, a folder, no plain file, unreadable or empty.
 void check_readable(const std::filesystem::path& path);

@@ -87,6 +87,13 @@ struct MaterialDataOptions {
 /// once, before anything is read. In CMake the path is $<TARGET_FILE:adamas::reader>.
 void set_reader_program(const std::filesystem::path& program);
 
+/// Says which data sets of files of HDF5 are a mesh or a grid, for files that no program's layout is known
+/// of: texts "KEY=DATASET" with the keys of docs/your_data.md (nodes, cells, base, x, y, z, boxes, steps,
+/// times). The layout holds for all files of HDF5 that are read afterwards, until another one is set; none:
+/// files are read as they are. It is not set while other threads read files. Throws Error (kUsage) for other
+/// texts.
+void set_hdf5_layout(const std::vector<std::string>& layout);
+
 /// Reads volume fractions or labels, and fields, on an image or a rectilinear grid: `.vti`, `.vtr`, `.vtk`,
 /// `.nrrd`, `.mha`, `.nii`, `.tif` and others.
 OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDataOptions& options = {},

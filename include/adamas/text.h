@@ -52,6 +52,8 @@ std::string length_text(double length);
 std::string bytes_text(double bytes);
 /// Returns a number with a noun: "1 site", "2 sites".
 std::string counted(std::size_t count, const std::string& thing);
+/// Returns a text as one word of a command line, in quotes where the shell would take it for something else.
+std::string as_argument(const std::string& text);
 /// Returns a cell of a table of comma-separated values: in quotes where it would be taken for several cells.
 std::string csv_text(const std::string& text);
 

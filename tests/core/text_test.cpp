@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
 #include <random>
 
 namespace adamas {
@@ -22,6 +24,21 @@ TEST(VisibleText, ShowsWhatActsOnATerminal) {
   EXPECT_EQ(visible_text("\x9b\x32J \xff\xc3"), "\\x9b2J \\xff\\xc3");
   EXPECT_EQ(visible_text("gnp\u202e.txt \u2066\u200f\u061c\u2029"),
             "gnp\\u202e.txt \\u2066\\u200f\\u061c\\u2029");
+}
+
+/// The shell takes each argument for one word, and gives it back as it was.
+TEST(AsArgument, IsOneWordOfTheShell) {
+  EXPECT_EQ(as_argument("ct/head-2.nrrd"), "ct/head-2.nrrd");
+  for (const std::string text :
+       {"", "a b", "it's", "$HOME", "a;b", "--x=*", "'", "back\\slash", "a\"b", "Ä"}) {
+    const std::string command = "printf %s " + as_argument(text);
+    std::FILE* const pipe = ::popen(command.c_str(), "r");
+    ASSERT_NE(pipe, nullptr);
+    std::array<char, 64> bytes{};
+    const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), pipe);
+    ::pclose(pipe);
+    EXPECT_EQ(std::string(bytes.data(), count), text) << command;
+  }
 }
 
 /// Whatever the bytes, the result is UTF-8 without control characters, and applying the function to it

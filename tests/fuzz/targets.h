@@ -16,6 +16,7 @@
 #include "core/io/network_ply.h"
 #include "core/io/nifti_header.h"
 #include "core/io/nrrd_header.h"
+#include "core/io/spy_dump.h"
 #include "core/io/surface_ply.h"
 #include "core/io/volume_reader.h"
 #include "core/io/vti_header.h"
@@ -59,7 +60,10 @@ inline void surface_ply(std::string_view bytes) {
 }
 
 inline void region_names(std::string_view bytes) {
-  for (const auto& [label, name] : parse_region_names(bytes, "fuzz")) require(!name.empty(), "empty name");
+  const RegionTable table = parse_region_table(bytes, "fuzz");
+  for (const auto& [label, name] : table.names) require(!name.empty(), "empty name");
+  for (const auto& [label, colour] : table.colours)
+    require(table.names.contains(label), "a colour of nothing");
 }
 
 inline void nrrd_header(std::string_view bytes) {
@@ -169,6 +173,16 @@ inline void mrc_volume(std::string_view bytes) {
 inline void numpy_array(std::string_view bytes) {
   const TemporaryFile file(bytes, ".npz");
   require(!read_grid_file(file.path()).arrays.empty(), "no array");
+}
+
+/// The bytes are a whole dump of CTH of one processor.
+inline void spy_dump(std::string_view bytes) {
+  const TemporaryFile file(bytes, ".0");
+  const MeshFile mesh = read_spy_dump(file.path());
+  for (const GridArray& array : mesh.arrays)
+    require(array.size() == mesh.cell_ends.size(), "other values than cells");
+  for (const std::uint32_t point : mesh.face_points)
+    require(point < mesh.points.size(), "corner out of range");
 }
 
 /// The bytes are a whole .vti, which is read as a grid and as a volume. Encoded or compressed arrays are

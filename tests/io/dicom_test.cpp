@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "adamas/file_summary.h"
 #include "adamas/files.h"
 #include "core/base/error.h"
 #include "core/io/grid_file.h"
@@ -285,6 +286,28 @@ TEST(Dicom, MaterialsAreTakenOfTheSeriesThatAreNamed) {
   options = {};
   options.labels = "organs";
   EXPECT_TRUE(says(message(options), "expected one series of DICOM 'organs'"));
+}
+
+TEST(Dicom, TheSeriesOfAFolderAreListed) {
+  const Scratch folder;
+  std::filesystem::create_directory(folder / "ct");
+  const std::vector<std::int16_t> pixels = pixels_of(0);
+  write_two(folder, "1.2.3", "head", pixels);
+  EXPECT_EQ(folder_series(folder / "ct").size(), 1u);
+  write_two(folder, "1.2.4", "chest", pixels);
+  write_two(folder, "1.2.5", "chest", pixels);
+  write_two(folder, "1.2.6", "", pixels);
+  put_bytes(folder / "ct/notes", "no image");
+  std::string names;
+  for (const SeriesSummary& one : folder_series(folder / "ct")) {
+    names += one.name + ";";
+    EXPECT_EQ(one.files, 2u);
+    // Its name is what chooses it.
+    EXPECT_EQ(read_volume(folder / "ct", one.name).grid.dimensions[2], 2u);
+  }
+  EXPECT_EQ(names, "head;1.2.4;1.2.5;1.2.6;");
+  EXPECT_TRUE(folder_series(folder / "ct/notes").empty());
+  EXPECT_TRUE(folder_series(folder.folder()).empty());
 }
 
 /// A segmentation of two segments in a volume of 8 x 2 x 3 voxels; frames lie in no order.

@@ -26,6 +26,7 @@ TEST(FuzzCorpus, NiftiVolume) { EXPECT_EQ(fuzz::replay("nifti_volume", fuzz::nif
 TEST(FuzzCorpus, MrcVolume) { EXPECT_EQ(fuzz::replay("mrc_volume", fuzz::mrc_volume), 3u); }
 TEST(FuzzCorpus, NumpyArray) { EXPECT_EQ(fuzz::replay("numpy_array", fuzz::numpy_array), 4u); }
 TEST(FuzzCorpus, PackedVti) { EXPECT_EQ(fuzz::replay("packed_vti", fuzz::packed_vti), 5u); }
+TEST(FuzzCorpus, SpyDump) { EXPECT_EQ(fuzz::replay("spy_dump", fuzz::spy_dump), 2u); }
 TEST(FuzzCorpus, MesherReply) { EXPECT_EQ(fuzz::replay("mesher_reply", fuzz::mesher_reply), 2u); }
 
 }  // namespace

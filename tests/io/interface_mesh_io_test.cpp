@@ -255,17 +255,20 @@ TEST(NetworkText, EveryTruncationIsAnErrorOrTheWholeNetwork) {
 }
 
 TEST(NetworkText, RegionNames) {
-  const auto names = parse_region_names("0 Universe\n 12  The Region \n\n# note\n(note)\n-1 out\n", "names");
+  const auto names =
+      parse_region_table("0 Universe\n 12  The Region \n\n# note\n(note)\n-1 out\n", "names").names;
   EXPECT_EQ(names, (std::map<std::int64_t, std::string>{{-1, "out"}, {0, "Universe"}, {12, "The Region"}}));
   EXPECT_TRUE(
-      says(error_of([] { parse_region_names("0 a\nb c\n", "names"); }), "names: line 2: expected a label"));
+      says(error_of([] { parse_region_table("0 a\nb c\n", "names"); }), "names: line 2: expected a label"));
   EXPECT_TRUE(
-      says(error_of([] { parse_region_names("0 a\n0 c\n", "names"); }), "names: line 2: expected one name"));
-  EXPECT_TRUE(says(error_of([] { parse_region_names("7\n", "names"); }), "names: line 1"));
-  const auto table = parse_region_names(
-      "# ITK-SnAP Label Description File\n    0     0    0    0        0  0  0    \"Clear Label\"\n"
-      "   12   255  128   0        0.5  1  1    \"Left Hippocampus\"\n   13   \"quoted\" name\n",
-      "table");
+      says(error_of([] { parse_region_table("0 a\n0 c\n", "names"); }), "names: line 2: expected one name"));
+  EXPECT_TRUE(says(error_of([] { parse_region_table("7\n", "names"); }), "names: line 1"));
+  const auto table =
+      parse_region_table(
+          "# ITK-SnAP Label Description File\n    0     0    0    0        0  0  0    \"Clear Label\"\n"
+          "   12   255  128   0        0.5  1  1    \"Left Hippocampus\"\n   13   \"quoted\" name\n",
+          "table")
+          .names;
   EXPECT_EQ(table.at(0), "Clear Label");
   EXPECT_EQ(table.at(12), "Left Hippocampus");
   EXPECT_EQ(table.at(13), "\"quoted\" name");

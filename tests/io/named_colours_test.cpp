@@ -52,9 +52,9 @@ TEST(NamedColours, OfLayersBelongToTheSegmentsInTheirOrder) {
 }
 
 TEST(NamedColours, OfTablesLeaveOutClearLabelsAndOtherLines) {
-  const auto colours = parse_region_colours(kTable, "t");
+  const auto colours = parse_region_table(kTable, "t").colours;
   EXPECT_EQ(colours, (std::map<std::int64_t, std::array<double, 3>>{{1, {1, 0, 0.2}}, {4, {0, 1, 0}}}));
-  EXPECT_EQ(parse_region_names(kTable, "t").at(5), "out of range");
+  EXPECT_EQ(parse_region_table(kTable, "t").names.at(5), "out of range");
 }
 
 TEST(NamedColours, ThatAreNoneAreRefused) {

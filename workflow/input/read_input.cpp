@@ -11,6 +11,7 @@
 #include "core/io/field_assembly.h"
 #include "core/io/grid_axes.h"
 #include "core/io/grid_centering.h"
+#include "core/io/hdf5_layout.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
@@ -123,7 +124,8 @@ MaterialDataOptions data_options(const InputOptions& options, Progress& progress
     how.stack_origin = options.raw.origin;
   }
   if (!options.region_names.empty() && !how.labels.empty()) {
-    how.label_names = parse_region_names(read_file(options.region_names), options.region_names.string());
+    how.label_names =
+        parse_region_table(read_file(options.region_names), options.region_names.string()).names;
   }
   return how;
 }
@@ -187,6 +189,7 @@ std::string InputOptions::material_option(const std::string& reconstruction) con
 }
 
 std::string InputOptions::grid_option(const std::string& reconstruction) const {
+  if (!hdf5_layout_texts().empty()) return "--hdf5";
   if (const std::string option = material_option(reconstruction); !option.empty() || !data.centering)
     return option;
   return data.centering == Centering::kCells ? "--cells" : "--points";
