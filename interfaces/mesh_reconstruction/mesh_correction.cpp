@@ -14,6 +14,7 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
+#include "interfaces/mesh_reconstruction/mesh_dispersed.h"
 #include "interfaces/mesh_reconstruction/mesh_start.h"
 
 namespace adamas::interfaces {
@@ -177,20 +178,28 @@ class Diffusion {
 
 class Correction {
  public:
-  Correction(const MeshData& data, MeshValues& values, Progress& progress)
-      : data_(data), values_(values), progress_(progress), volumes_(values) {}
+  /// `dispersed`: the volumes that were taken out, by material of the data.
+  Correction(const MeshData& data, MeshValues& values, Steps steps, std::vector<double> dispersed,
+             Progress& progress)
+      : data_(data),
+        values_(values),
+        progress_(progress),
+        volumes_(values),
+        found_(std::move(steps.widths)),
+        extents_(std::move(steps.extents)) {
+    agreement_.volumes = volumes_without(dispersed);
+    agreement_.findings.dispersed = std::move(dispersed);
+  }
 
-  MeshAgreement run() {
-    const Steps steps = find_steps(data_, values_);
-    extents_ = steps.extents;
-    const std::vector<double>& found = steps.widths;
-    const double widest = found.empty() ? 0 : *std::ranges::max_element(found);
+  /// `known`: whether the widths are known to be right.
+  MeshAgreement run(bool known) {
+    const double widest = found_.empty() ? 0 : *std::ranges::max_element(found_);
     // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
-    if (widest < kSurelyBlurred) {
-      correct(std::vector<double>(found.size(), 0.0));
-      if (agreement_.cells.mean_difference > kFits) correct(found);
+    if (widest < kSurelyBlurred && !known) {
+      correct(std::vector<double>(found_.size(), 0.0));
+      if (agreement_.cells.mean_difference > kFits) correct(found_);
     } else {
-      correct(found);
+      correct(found_);
     }
     if (values_.active_cells().empty()) return agreement_;
     close_totals();
@@ -200,6 +209,22 @@ class Correction {
   }
 
  private:
+  /// Returns the volumes of materials after dispersed parts were given to the others in their cells.
+  [[nodiscard]] IdVector<MaterialId, double> volumes_without(const std::vector<double>& dispersed) const {
+    IdVector<MaterialId, double> volumes = data_.volumes();
+    if (std::ranges::all_of(dispersed, [](double volume) { return volume == 0; })) return volumes;
+    for (MaterialId m(0); m.value < volumes.size(); ++m.value) volumes[m] -= dispersed[m.value];
+    for (std::size_t c = 0; c < data_.mesh.cell_count(); ++c) {
+      for (const Entry& entry : std::as_const(values_).at(c)) {
+        if (entry.fraction <= 0) continue;
+        const MaterialId m = values_.material(entry.material);
+        volumes[m] += data_.mesh.cell_volume(c) *
+                      (static_cast<double>(entry.fraction) - static_cast<double>(data_.fraction(m, c)));
+      }
+    }
+    return volumes;
+  }
+
   /// Corrects values for steps of these widths.
   void correct(const std::vector<double>& widths) {
     widths_ = widths;
@@ -279,8 +304,8 @@ class Correction {
 
   /// Sets the findings about widths of steps in mixed cells.
   void find_blur() {
-    FractionFindings& findings = agreement_.findings = {};
-    findings.dispersed.assign(data_.materials.size(), 0.0);
+    FractionFindings& findings = agreement_.findings;
+    findings = {.dispersed = std::move(findings.dispersed)};
     std::vector<double> of_cells;
     std::size_t mixed = 0;
     for (const Index c : values_.active_cells()) {
@@ -454,7 +479,7 @@ class Correction {
   /// Moves all values of each material by one offset until it has its volume.
   void close_totals() {
     const std::size_t count = values_.material_count();
-    const IdVector<MaterialId, double> wanted = data_.volumes();
+    const IdVector<MaterialId, double>& wanted = agreement_.volumes;
     const PolyhedralMesh& mesh = data_.mesh;
     const std::vector<Index>& active = values_.active_cells();
     double domain = 0;
@@ -476,17 +501,24 @@ class Correction {
         for (std::size_t e = 0; e < own.size(); ++e) owned[own[e].material] += volume * volumes_.parts(n)[e];
         for (const auto& [a, b, growth] : volumes_.exchanges(n)) exchanged[{a, b}] += volume * growth;
       }
-      const auto size = static_cast<Eigen::Index>(count);
+      // The unknowns are the offsets of materials that have interfaces.
+      std::vector<int> unknown(count, -1);
+      for (const auto& [pair, by] : exchanged) unknown[pair.first] = unknown[pair.second] = 0;
+      int size = 0;
+      for (int& of_one : unknown) of_one = of_one == 0 ? size++ : -1;
+      double most_missing = 0;
       Eigen::VectorXd missing(size);
-      for (std::size_t m = 0; m < count; ++m)
-        missing[static_cast<Eigen::Index>(m)] =
-            wanted[values_.material(static_cast<std::uint16_t>(m))] - owned[m];
-      if (missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
+      for (std::size_t m = 0; m < count; ++m) {
+        const double own = wanted[values_.material(static_cast<std::uint16_t>(m))] - owned[m];
+        most_missing = std::max(most_missing, std::abs(own));
+        if (unknown[m] >= 0) missing[unknown[m]] = own;
+      }
+      if (most_missing <= kTotalTolerance * domain || size == 0) return;
       missing.array() -= missing.mean();
       std::vector<Eigen::Triplet<double>> triplets;
       double greatest = 0;
       for (const auto& [pair, by] : exchanged) {
-        const int a = pair.first, b = pair.second;
+        const int a = unknown[pair.first], b = unknown[pair.second];
         triplets.emplace_back(a, a, by), triplets.emplace_back(b, b, by);
         triplets.emplace_back(a, b, -by), triplets.emplace_back(b, a, -by);
         greatest = std::max(greatest, by);
@@ -500,7 +532,10 @@ class Correction {
       offsets.array() -= offsets.mean();
       for (const Index c : active) {
         const double most = kMostMove * values_.size(c);
-        for (Entry& entry : values_.at(c)) entry.value += std::clamp(offsets[entry.material], -most, most);
+        for (Entry& entry : values_.at(c)) {
+          if (unknown[entry.material] >= 0)
+            entry.value += std::clamp(offsets[unknown[entry.material]], -most, most);
+        }
       }
     }
   }
@@ -509,13 +544,23 @@ class Correction {
   MeshValues& values_;
   Progress& progress_;
   MeshVolumes volumes_;
-  std::vector<double> extents_;  // by entry of active cells (Steps)
-  std::vector<double> widths_;   // by material, in extents of cells; 0 for a sharp one
-  std::vector<double> blurs_;    // those without the part of the cells
+  std::vector<double> found_, extents_;  // widths and extents (Steps)
+  std::vector<double> widths_;           // by material, in extents of cells; 0 for a sharp one
+  std::vector<double> blurs_;            // those without the part of the cells
   std::optional<Diffusion> diffusion_;
   std::vector<double> shown_;  // by entry of active cells
   MeshAgreement agreement_;
 };
+
+/// Makes materials sharp that have at most half of every cell; blurred, they would own nothing.
+void set_faint_sharp(const MeshValues& values, std::vector<double>& widths) {
+  std::vector<float> most(widths.size(), 0);
+  for (const Index c : values.active_cells()) {
+    for (const Entry& entry : values.at(c))
+      most[entry.material] = std::max(most[entry.material], entry.fraction);
+  }
+  for (std::size_t n = 0; n < widths.size(); ++n) widths[n] = most[n] <= 0.5f ? 0 : widths[n];
+}
 
 }  // namespace
 
@@ -586,8 +631,18 @@ void MeshVolumes::measure_cell(std::size_t n, bool growth) {
   });
 }
 
-MeshAgreement correct_values(const MeshData& data, MeshValues& values, Progress& progress) {
-  return Correction(data, values, progress).run();
+MeshAgreement correct_values(const MeshData& data, const FractionOptions& options, MeshValues& values,
+                             Progress& progress) {
+  Steps steps = find_steps(data, values);
+  std::vector<double> dispersed(data.materials.size(), 0);
+  if (!options.keep_dispersed) dispersed = take_dispersed(steps.widths, values);
+  if (std::ranges::any_of(dispersed, [](double volume) { return volume > 0; }))
+    steps = find_steps(data, values);
+  set_faint_sharp(values, steps.widths);
+  const std::optional<double> known = options.known_blur();
+  if (known)
+    steps.widths.assign(steps.widths.size(), *known > 0 ? std::sqrt(*known * *known + kCellVariance) : 0);
+  return Correction(data, values, std::move(steps), std::move(dispersed), progress).run(known.has_value());
 }
 
 }  // namespace adamas::interfaces
