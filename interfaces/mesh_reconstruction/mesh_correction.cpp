@@ -15,7 +15,10 @@
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "interfaces/mesh_reconstruction/mesh_dispersed.h"
+#include "interfaces/mesh_reconstruction/mesh_errors.h"
 #include "interfaces/mesh_reconstruction/mesh_start.h"
+#include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -191,16 +194,30 @@ class Correction {
     agreement_.findings.dispersed = std::move(dispersed);
   }
 
-  /// `known`: whether the widths are known to be right.
-  MeshAgreement run(bool known) {
+  /// `known`: whether the widths are known to be right. `error`: the standard deviation of errors of
+  /// fractions, where that is known.
+  MeshAgreement run(bool known, const std::optional<double>& error) {
     const double widest = found_.empty() ? 0 : *std::ranges::max_element(found_);
     // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
-    if (widest < kSurelyBlurred && !known) {
-      correct(std::vector<double>(found_.size(), 0.0));
-      if (agreement_.cells.mean_difference > kFits) correct(found_);
-    } else {
-      correct(found_);
+    const bool unsure = widest < kSurelyBlurred && !known;
+    const std::vector<double> sharp(found_.size(), 0.0);
+    start(unsure ? sharp : found_);
+    double deviation = error ? *error : deviation_of_errors();
+    if (unsure && deviation > SiteValues::kLeastError) {
+      // Steps are as wide as explains the fractions better.
+      start(found_);
+      const double of_blurred = error ? *error : deviation_of_errors();
+      const bool blurred = of_blurred < deviation;
+      deviation = std::min(of_blurred, deviation);
+      if (!blurred || deviation <= SiteValues::kLeastError) start(sharp);
     }
+    if (deviation > SiteValues::kLeastError) smooth(deviation);
+    correct();
+    if (unsure && deviation_ == 0 && agreement_.cells.mean_difference > kFits) {
+      start(found_);
+      correct();
+    }
+    agreement_.findings.fraction_error = error.value_or(deviation_);
     if (values_.active_cells().empty()) return agreement_;
     close_totals();
     measure(false);
@@ -225,14 +242,35 @@ class Correction {
     return volumes;
   }
 
-  /// Corrects values for steps of these widths.
-  void correct(const std::vector<double>& widths) {
+  /// Sets the values from which those of steps of these widths are corrected.
+  void start(const std::vector<double>& widths) {
     widths_ = widths;
-    blurs_.clear();
-    diffusion_.reset();
     set_start_values(data_, widths, extents_, values_);
     find_blur();
+    errors_.emplace(widths_, extents_, values_);
+  }
+
+  [[nodiscard]] double deviation_of_errors() const {
+    return errors_->deviation(agreement_.findings.blur_median);
+  }
+
+  /// Smooths values and fractions within the errors of the fractions.
+  void smooth(double deviation) {
+    for (const Index c : values_.active_cells()) {
+      for (const Entry& entry : std::as_const(values_).at(c)) given_.push_back(entry.fraction);
+    }
+    deviation_ = deviation;
+    errors_->smooth(deviation, values_);
+    // The cells themselves blur sharp fractions, so that errors are not held to the end.
+    for (double& width : widths_) width = std::max(width, kUniformDeviation);
+  }
+
+  /// Corrects values in rounds.
+  void correct() {
+    blurs_.clear();
+    diffusion_.reset();
     if (values_.active_cells().empty()) return;
+    const std::vector<double>& widths = widths_;
     const bool blurred = std::ranges::any_of(widths, [](double width) { return width > 0; });
     if (blurred) {
       // The cells themselves are a part of the width.
@@ -275,14 +313,15 @@ class Correction {
     if (diffusion_ && compared) diffusion_->run(shown_);
     if (!compared) return;
     CellAgreement& found = agreement_.cells;
-    found = {.tolerance = diffusion_ ? kToleranceBlurred : kTolerance};
+    found = {.tolerance = std::max(diffusion_ ? kToleranceBlurred : kTolerance, 3 * deviation_)};
     double sum = 0;
     std::size_t at = 0;
     for (const Index c : active) {
       double off = 0;
       bool is_mixed = false;
       for (const Entry& entry : std::as_const(values_).at(c)) {
-        off = std::max(off, std::abs(shown_[at++] - static_cast<double>(entry.fraction)));
+        const float given = given_.empty() ? entry.fraction : given_[at];
+        off = std::max(off, std::abs(shown_[at++] - static_cast<double>(given)));
         is_mixed = is_mixed || (entry.fraction > 0 && entry.fraction < 1);
       }
       if (!is_mixed) {
@@ -356,7 +395,10 @@ class Correction {
         moves.push_back(std::clamp(by, -kMostMove * extent, kMostMove * extent));
       }
     }
-    if (diffusion_) continue_moves(moves);
+    if (diffusion_) {
+      errors_->take_means(moves);
+      continue_moves(moves);
+    }
     at = 0;
     for (const Index c : active) {
       for (Entry& entry : values_.at(c)) entry.value += moves[at++];
@@ -548,6 +590,9 @@ class Correction {
   std::vector<double> widths_;           // by material, in extents of cells; 0 for a sharp one
   std::vector<double> blurs_;            // those without the part of the cells
   std::optional<Diffusion> diffusion_;
+  std::optional<MeshErrors> errors_;
+  double deviation_ = 0;       // of errors of fractions, if they were smoothed
+  std::vector<float> given_;   // by entry of active cells: fractions before they were smoothed
   std::vector<double> shown_;  // by entry of active cells
   MeshAgreement agreement_;
 };
@@ -642,7 +687,8 @@ MeshAgreement correct_values(const MeshData& data, const FractionOptions& option
   const std::optional<double> known = options.known_blur();
   if (known)
     steps.widths.assign(steps.widths.size(), *known > 0 ? std::sqrt(*known * *known + kCellVariance) : 0);
-  return Correction(data, values, std::move(steps), std::move(dispersed), progress).run(known.has_value());
+  return Correction(data, values, std::move(steps), std::move(dispersed), progress)
+      .run(known.has_value(), options.known_error());
 }
 
 }  // namespace adamas::interfaces
