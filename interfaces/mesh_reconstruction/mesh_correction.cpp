@@ -62,8 +62,11 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 class Diffusion {
  public:
   /// `widths`: the standard deviations as lengths, by entry of active cells.
-  Diffusion(const MeshValues& values, std::vector<double> widths)
-      : values_(values), widths_(std::move(widths)), place_(values.subdivision().mesh().cell_count(), kNone) {
+  Diffusion(const MeshValues& values, const MeshWalls& walls, std::vector<double> widths)
+      : values_(values),
+        walls_(walls),
+        widths_(std::move(widths)),
+        place_(values.subdivision().mesh().cell_count(), kNone) {
     const std::vector<Index>& active = values.active_cells();
     double most = 0;
     firsts_.push_back(0);
@@ -106,12 +109,14 @@ class Diffusion {
   /// Adds the sides of a cell; returns the sum of the rates of its faces.
   double add_sides(Index c) {
     const PolyhedralMesh& mesh = values_.subdivision().mesh();
-    if (!(mesh.cell_volume(c) > 0)) return 0;
+    // Nothing passes the faces of walls.
+    if (!(mesh.cell_volume(c) > 0) || walls_.fills(c)) return 0;
     const double least = kLeastDistance * values_.size(c);
     double rate = 0;
     Vec3 open;  // the area of the cell's faces at the boundary
     for (const Index f : mesh.faces_of_cell(c)) {
       const Index other = mesh.neighbour(c, f);
+      if (other != PolyhedralMesh::kNone && walls_.fills(other)) continue;
       const Vec3 area = face_area(f);
       if (other == PolyhedralMesh::kNone) {
         open += area;
@@ -145,6 +150,7 @@ class Diffusion {
     std::vector<Index> ring;
     const std::array<Index, 1> self{c};
     subdivision.find_ring(self, ring);
+    std::erase_if(ring, [this](Index other) { return walls_.fills(other); });
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     std::vector<Eigen::Vector3d> rows;
     for (const Index other : ring) {
@@ -171,6 +177,7 @@ class Diffusion {
     double rate;
   };
   const MeshValues& values_;
+  const MeshWalls& walls_;
   std::vector<double> widths_;
   std::vector<std::uint32_t> place_;               // by cell: its place among active ones, or kNone
   std::vector<std::size_t> firsts_, first_sides_;  // by active cell: its first entry and side
@@ -182,10 +189,11 @@ class Diffusion {
 class Correction {
  public:
   /// `dispersed`: the volumes that were taken out, by material of the data.
-  Correction(const MeshData& data, MeshValues& values, Steps steps, std::vector<double> dispersed,
-             Progress& progress)
+  Correction(const MeshData& data, MeshValues& values, MeshWalls walls, Steps steps,
+             std::vector<double> dispersed, Progress& progress)
       : data_(data),
         values_(values),
+        walls_(std::move(walls)),
         progress_(progress),
         volumes_(values),
         found_(std::move(steps.widths)),
@@ -245,7 +253,7 @@ class Correction {
   /// Sets the values from which those of steps of these widths are corrected.
   void start(const std::vector<double>& widths) {
     widths_ = widths;
-    set_start_values(data_, widths, extents_, values_);
+    set_start_values(data_, widths, extents_, walls_, values_);
     find_blur();
     errors_.emplace(widths_, extents_, values_);
   }
@@ -281,7 +289,7 @@ class Correction {
         for (const Entry& entry : std::as_const(values_).at(c))
           lengths.push_back(blurs_[entry.material] * extents_[lengths.size()]);
       }
-      diffusion_.emplace(values_, std::move(lengths));
+      diffusion_.emplace(values_, walls_, std::move(lengths));
     }
     const int most = blurred ? kRoundsBlurred : kMostRounds;
     double before = std::numeric_limits<double>::infinity();
@@ -403,6 +411,7 @@ class Correction {
     for (const Index c : active) {
       for (Entry& entry : values_.at(c)) entry.value += moves[at++];
     }
+    if (diffusion_) walls_.set_values(values_);
   }
 
   /// Replaces the moves of blurred materials near the boundary, beyond which nobody knows what blurred
@@ -584,6 +593,7 @@ class Correction {
 
   const MeshData& data_;
   MeshValues& values_;
+  MeshWalls walls_;
   Progress& progress_;
   MeshVolumes volumes_;
   std::vector<double> found_, extents_;  // widths and extents (Steps)
@@ -678,16 +688,23 @@ void MeshVolumes::measure_cell(std::size_t n, bool growth) {
 
 MeshAgreement correct_values(const MeshData& data, const FractionOptions& options, MeshValues& values,
                              Progress& progress) {
-  Steps steps = find_steps(data, values);
+  MeshWalls walls;
+  Steps steps = find_steps(data, walls, values);
   std::vector<double> dispersed(data.materials.size(), 0);
   if (!options.keep_dispersed) dispersed = take_dispersed(steps.widths, values);
   if (std::ranges::any_of(dispersed, [](double volume) { return volume > 0; }))
-    steps = find_steps(data, values);
+    steps = find_steps(data, walls, values);
   set_faint_sharp(values, steps.widths);
+  const auto is_blurred = [](double width) { return width >= kSurelyBlurred; };
+  if (std::ranges::any_of(steps.widths, is_blurred)) walls = MeshWalls(values);
+  if (walls.any()) {
+    steps = find_steps(data, walls, values);
+    set_faint_sharp(values, steps.widths);
+  }
   const std::optional<double> known = options.known_blur();
   if (known)
     steps.widths.assign(steps.widths.size(), *known > 0 ? std::sqrt(*known * *known + kCellVariance) : 0);
-  return Correction(data, values, std::move(steps), std::move(dispersed), progress)
+  return Correction(data, values, std::move(walls), std::move(steps), std::move(dispersed), progress)
       .run(known.has_value(), options.known_error());
 }
 

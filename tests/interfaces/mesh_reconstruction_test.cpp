@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -201,6 +202,57 @@ TEST(MeshReconstruction, AFaintLayerAtAWallIsOneBody) {
   for (BodyId b(0); b.value < source.network->table().body_count(); ++b.value)
     crusts += source.network->table().material(b) == MaterialId(2) ? 1 : 0;
   EXPECT_EQ(crusts, 1);
+}
+
+/// A step that is blurred by a cell and a half, and the mould that it meets: each of its cells is full.
+MeshData step_in_a_mould(bool with_mould) {
+  MeshData data;
+  data.source = "mould";
+  data.mesh = tube(16);
+  for (const char* name : {"mould", "melt", "solid"}) data.materials.push_back(name);
+  std::array<std::vector<float>, 3> fractions;
+  for (std::size_t c = 0; c < data.mesh.cell_count(); ++c) {
+    const Vec3 p = data.mesh.cell_center(c);
+    const bool mould = with_mould && std::hypot(p.x, p.y) > 1.75;
+    const auto melt = static_cast<float>(0.5 * std::erfc((p.x - 0.9) / (0.1 * std::sqrt(2.0))));
+    fractions[0].push_back(mould ? 1 : 0);
+    fractions[1].push_back(mould ? 0 : melt);
+    fractions[2].push_back(mould ? 0 : 1 - melt);
+  }
+  for (std::vector<float>& own : fractions) data.fractions.push_back(std::move(own));
+  data.normalise();
+  return data;
+}
+
+/// The faces of a mould are interfaces, whatever blurred steps do beside them, and these run up to it as they
+/// would without it.
+TEST(MeshReconstruction, BlurredStepsEndAtWalls) {
+  constexpr double kCell = 1.0 / 16;
+  const MaterialId mould(0), melt(1), solid(2), outside(3);
+  double off_wall = 0;
+  std::array<double, 2> off_step{}, outermost{};
+  for (const bool with_mould : {false, true}) {
+    const MeshData data = step_in_a_mould(with_mould);
+    const MeshReconstruction found = reconstruct_mesh(data);
+    expect_volumes(data, found.mesh);
+    EXPECT_GT(found.agreement.findings.blur_share, 0.99);
+    for (const InterfaceTriangle& t : found.mesh.triangles) {
+      if (t.front == outside || t.back == outside) continue;
+      for (const std::uint32_t point : t.points) {
+        const Vec3& p = found.mesh.points[point];
+        const double r = std::hypot(p.x, p.y);
+        // Where the step meets the wall, within a cell, the wall is not exact.
+        if ((t.front == mould || t.back == mould) && std::abs(p.x - 0.9) > 1.5 * kCell)
+          off_wall = std::max(off_wall, std::abs(r - 1.75));
+        if (std::set{t.front, t.back} != std::set{melt, solid} || r > 1.76) continue;
+        off_step[with_mould] = std::max(off_step[with_mould], std::abs(p.x - 0.9));
+        outermost[with_mould] = std::max(outermost[with_mould], r);
+      }
+    }
+  }
+  EXPECT_LT(off_wall, 0.15 * kCell);
+  EXPECT_LT(off_step[1], off_step[0] + 0.2 * kCell);
+  EXPECT_GT(outermost[1], 1.75 - 0.5 * kCell) << "the step reaches the wall";
 }
 
 TEST(MeshReconstruction, AGivenBlurIsTaken) {
