@@ -80,8 +80,8 @@ void print_report(const CutMeshReport& report, Console& console) {
   console.table(rows);
 }
 
-Figures write_cut_mesh(const CutMeshOutput& output, const AdaptiveMesh& mesh, std::vector<Ledger>& ledgers,
-                       Session& session) {
+Figures write_cut_mesh(const CutMeshOutput& output, const AdaptiveMesh& mesh, const MaterialColours& colours,
+                       std::vector<Ledger>& ledgers, Session& session) {
   if (output.file.empty()) return nullptr;
   Console& console = session.console;
   const CutMesh cut = cut_mesh(mesh, output.options, console);
@@ -89,7 +89,7 @@ Figures write_cut_mesh(const CutMeshOutput& output, const AdaptiveMesh& mesh, st
   note_changed_bodies(cut.report(), mesh, console);
   ledgers.push_back({"cut mesh", material_totals(cut)});
   console.step("writing " + output.file, -1);
-  session.outputs.write(output.file, [&](const auto& path) { adamas::write_mesh(path, cut); });
+  session.outputs.write(output.file, [&](const auto& path) { write_mesh(path, cut, colours); });
   session.outputs.write(output.faces(), [&](const auto& path) { write_faces(path, cut); });
   return report_figures(cut.report(), mesh);
 }
@@ -162,6 +162,7 @@ void write_interfaces(const MeshOutputs& outputs, const InterfaceTriangles& inte
   session.outputs.write(outputs.picture.file, [&](const auto& path) {
     DrawingOptions drawing = outputs.picture.drawing;
     drawing.domain = mesh.domain();
+    drawing.colours = outputs.colours;
     write_picture(path, interfaces, mesh, drawing);
   });
 }
@@ -173,7 +174,7 @@ Figures write_meshes(const MeshOutputs& outputs, const AdaptiveMesh& mesh, std::
     session.console.step("writing " + outputs.mesh, -1);
     write_mesh(path, mesh, outputs.colours);
   });
-  Figures cut = write_cut_mesh(outputs.cut, mesh, ledgers, session);
+  Figures cut = write_cut_mesh(outputs.cut, mesh, outputs.colours, ledgers, session);
   session.outputs.write(outputs.ledger,
                         [&](const auto& path) { write_text(path, ledger_csv(ledgers, mesh.fields())); });
   return cut;

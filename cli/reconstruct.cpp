@@ -148,13 +148,15 @@ void run(Options& options, Session& session) {
   Figures figures = print_result(result, given, console);
   figures["triangles"] = result.mesh.triangles.size();
   console.step("writing", -1);
-  session.outputs.write(options.output, [&](const auto& path) {
-    write_mesh(path, result.mesh, find_material_colours(options.input));
-  });
+  MaterialColours colours;
+  if (!options.output.empty() || !options.picture.file.empty())
+    colours = find_material_colours(options.input);
+  session.outputs.write(options.output, [&](const auto& path) { write_mesh(path, result.mesh, colours); });
   console.check();
   session.outputs.write(options.picture.file, [&](const auto& path) {
     DrawingOptions drawing = options.picture.drawing;
     drawing.domain = result.domain;
+    drawing.colours = colours;
     write_picture(path, result.mesh, drawing);
   });
   add_costs(figures, console);

@@ -231,7 +231,7 @@ std::vector<Ledger> write_outputs(const Options& options, const AdaptiveMesh& me
     console.step("measuring all cells of the hierarchy", -1);
     const MultiresolutionMesh hierarchy = multiresolution_mesh(mesh, console);
     console.step("writing " + options.save, -1);
-    write_hierarchy(path, hierarchy);
+    write_hierarchy(path, hierarchy, options.outputs.colours);
   });
   std::vector<Ledger> ledgers;
   if (std::vector<MaterialTotals> totals = input_totals(mesh); !totals.empty())
@@ -340,7 +340,7 @@ void run(Options& options, Session& session) {
   session.outputs.declare("--save", options.save, {".h5"});
   declare_side_sets(options.side_sets, session);
   const AdaptiveMesh mesh = resample_input(options, session);
-  if (options.outputs.need_mesh() || options.outputs.need_interfaces())
+  if (options.outputs.need_mesh() || options.outputs.need_interfaces() || !options.save.empty())
     options.outputs.colours = find_material_colours(options.input);
   print_resampled(mesh.report(), console);
   Figures figures = resample_json(mesh.report());

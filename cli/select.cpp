@@ -117,7 +117,7 @@ Figures print_report(const SelectReport& report, Console& console) {
   return figures;
 }
 
-void run(const Options& options, Session& session) {
+void run(Options& options, Session& session) {
   Console& console = session.console;
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && session.json.empty()) {
     wrong_usage(
@@ -132,6 +132,7 @@ void run(const Options& options, Session& session) {
   console.step("selecting", -1);
   const SelectedMesh selected = hierarchy.select(options.selection, console);
   const AdaptiveMesh& mesh = selected.mesh;
+  options.outputs.colours = find_material_colours({.path = options.path});
   Figures figures = print_report(selected.report, console);
   if (options.outputs.need_interfaces())
     write_interfaces(options.outputs, mesh.interfaces(console), mesh, session);

@@ -9,6 +9,7 @@
 
 #include "adamas/text.h"
 #include "core/base/error.h"
+#include "core/io/array_file.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/labelled_network.h"
@@ -71,6 +72,17 @@ ColourArrays find_arrays(const std::filesystem::path& file) {
   return found;
 }
 
+/// Returns the colours of materials with these names: three numbers for each.
+NamedColours colours_of_rows(const std::vector<std::string>& names, const std::vector<double>& values) {
+  NamedColours result;
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    const std::array<double, 3> colour{values[3 * m], values[3 * m + 1], values[3 * m + 2]};
+    const auto good = [](double part) { return part >= 0 && part <= 1; };
+    if (std::ranges::all_of(colour, good)) result.emplace(visible_text(names[m]), colour);
+  }
+  return result;
+}
+
 /// Reads the colours that add_colours() has written.
 NamedColours read_colours(const std::filesystem::path& file) {
   ColourArrays found = find_arrays(file);
@@ -80,14 +92,29 @@ NamedColours read_colours(const std::filesystem::path& file) {
     fail("{}: array '{}': expected three numbers for each material, found {}", file.string(), kColours,
          found.colours->components);
   found.colours->grid.dimensions = {names.size(), 1, 1};
-  const std::vector<double> values = read_doubles(*found.colours);
-  NamedColours result;
-  for (std::size_t m = 0; m < names.size(); ++m) {
-    const std::array<double, 3> colour{values[3 * m], values[3 * m + 1], values[3 * m + 2]};
-    const auto good = [](double part) { return part >= 0 && part <= 1; };
-    if (std::ranges::all_of(colour, good)) result.emplace(visible_text(names[m]), colour);
+  return colours_of_rows(names, read_doubles(*found.colours));
+}
+
+/// The format of saved hierarchies (interfaces/selection/saved_hierarchy_file.h), and the names of their
+/// materials.
+constexpr const char* kHierarchy = "hierarchy";
+constexpr const char* kMaterials = "known/materials";
+constexpr int kAnyVersion = 1000000;
+
+/// Reads the colours that add_colours() has added to the arrays of a saved hierarchy.
+NamedColours read_saved_colours(const std::filesystem::path& file) {
+  const ArrayFile found = read_array_file(file, kHierarchy, {kMaterials, kColours}, 1, kAnyVersion);
+  const std::vector<std::string>* names = nullptr;
+  const std::vector<double>* rows = nullptr;
+  for (const NamedArray& array : found.arrays) {
+    if (array.name == kMaterials) names = std::get_if<std::vector<std::string>>(&array.values);
+    if (array.name == kColours) rows = std::get_if<std::vector<double>>(&array.values);
   }
-  return result;
+  if (names == nullptr || rows == nullptr) return {};
+  if (rows->size() != 3 * names->size())
+    fail("{}: array '{}': expected three numbers for each of {} materials, found {}", file.string(), kColours,
+         names->size(), rows->size());
+  return colours_of_rows(*names, *rows);
 }
 
 }  // namespace
@@ -118,6 +145,10 @@ NamedColours find_named_colours(const std::filesystem::path& file,
   const std::string extension = file_extension(file);
   if (extension == ".vtu" || extension == ".vtp") {
     result.merge(read_colours(file));
+    return result;
+  }
+  if (extension == ".h5" && is_array_file(file, kHierarchy)) {
+    result.merge(read_saved_colours(file));
     return result;
   }
   const InputFormat* format = find_format_by_name(file);

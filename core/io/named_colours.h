@@ -21,7 +21,7 @@ void add_colours(const IdVector<MaterialId, std::string>& materials, const Named
 
 /// Finds the colours that a table of regions (none if its path is empty) and the header of a file (the same)
 /// have for labels, under the names that these get; those of the table come first. A file may be .vtu or .vtp
-/// too, with the array of add_colours(). Throws Error at a damaged table or header.
+/// too, or a saved hierarchy, with the array of add_colours(). Throws Error at a damaged table or header.
 NamedColours find_named_colours(const std::filesystem::path& file, const std::filesystem::path& region_names);
 
 }  // namespace adamas::io

@@ -28,7 +28,7 @@ std::vector<NamedArray> cell_fields(const SolverMesh& mesh) {
   return fields;
 }
 
-void write_vtk_mesh(const std::filesystem::path& path, const SolverMesh& mesh) {
+void write_vtk_mesh(const std::filesystem::path& path, const SolverMesh& mesh, const NamedColours& colours) {
   UnstructuredMesh file;
   file.points = mesh.points;
   for (const auto& v : mesh.tetrahedra) {
@@ -43,6 +43,9 @@ void write_vtk_mesh(const std::filesystem::path& path, const SolverMesh& mesh) {
     file.point_arrays = mesh.point_fields;
   }
   file.field_arrays.push_back({"material_names", 1, mesh.blocks});
+  IdVector<MaterialId, std::string> blocks;
+  blocks.assign(mesh.blocks.begin(), mesh.blocks.end());
+  add_colours(blocks, colours, file.field_arrays);
   write_unstructured_mesh(path, file);
 }
 
@@ -337,9 +340,10 @@ SolverMesh read_solver_mesh(const std::filesystem::path& path) {
   return mesh;
 }
 
-void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh) {
+void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh,
+                       const NamedColours& colours) {
   const std::string extension = file_extension(path);
-  if (extension == ".vtu" || extension == ".vtkhdf") return write_vtk_mesh(path, mesh);
+  if (extension == ".vtu" || extension == ".vtkhdf") return write_vtk_mesh(path, mesh, colours);
   if (extension == ".msh") return write_gmsh(path, mesh);
   if (extension == ".exo") return write_exodus(path, mesh);
   fail("{}: expected .vtu, .vtkhdf, .msh or .exo, found '{}'", path.string(), extension);

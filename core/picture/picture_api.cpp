@@ -38,7 +38,11 @@ void check_slice(const Slice& slice) {
     fail("slice: expected values of {} points, found {}", slice.points.size(), slice.values.size());
 }
 
-SlicePanel to_panel(const Slice& slice, const PlaneFrame& frame, bool cells) {
+Colour area_colour(const Slice& slice, const DrawingOptions& options, std::size_t material) {
+  return colour_of(options, slice.materials, material, material_area_colour);
+}
+
+SlicePanel to_panel(const Slice& slice, const PlaneFrame& frame, const DrawingOptions& options) {
   SlicePanel panel;
   for (std::size_t p = 0; p + 1 < slice.offsets.size(); ++p) {
     FieldPolygon polygon;
@@ -47,10 +51,10 @@ SlicePanel to_panel(const Slice& slice, const PlaneFrame& frame, bool cells) {
       polygon.points.push_back({x, y});
       if (!slice.values.empty()) polygon.values.push_back(slice.values[i]);
     }
-    if (slice.values.empty()) polygon.colour = material_area_colour(slice.polygon_materials[p]);
+    if (slice.values.empty()) polygon.colour = area_colour(slice, options, slice.polygon_materials[p]);
     panel.polygons.push_back(std::move(polygon));
   }
-  if (cells) panel.lines.push_back(to_lines("cells", cell_stroke(), frame, slice.cell_edges));
+  if (options.cells) panel.lines.push_back(to_lines("cells", cell_stroke(), frame, slice.cell_edges));
   if (!slice.interface_edges.empty())
     panel.lines.push_back(
         to_lines("interfaces", approximated_interface_stroke(), frame, slice.interface_edges));
@@ -58,12 +62,12 @@ SlicePanel to_panel(const Slice& slice, const PlaneFrame& frame, bool cells) {
 }
 
 /// A legend of the materials that occur.
-std::vector<LegendEntry> legend_of(const Slice& slice) {
+std::vector<LegendEntry> legend_of(const Slice& slice, const DrawingOptions& options) {
   std::vector<LegendEntry> entries;
   for (std::size_t m = 0; m < slice.materials.size(); ++m) {
     const auto& all = slice.polygon_materials;
     if (std::find(all.begin(), all.end(), m) != all.end())
-      entries.push_back({slice.materials[m], material_area_colour(m)});
+      entries.push_back({slice.materials[m], area_colour(slice, options, m)});
   }
   return entries;
 }
@@ -140,6 +144,15 @@ void check_parts(const TriangleSurface& surface, const IsosurfaceParts& parts) {
 
 namespace picture {
 
+Colour colour_of(const DrawingOptions& options, const std::vector<std::string>& materials, std::size_t number,
+                 Colour (*otherwise)(std::size_t)) {
+  const auto found =
+      number < materials.size() ? options.colours.find(materials[number]) : options.colours.end();
+  if (found == options.colours.end()) return otherwise(number);
+  const auto& [red, green, blue] = found->second;
+  return {red, green, blue};
+}
+
 InterfacePicture interface_picture(const InterfaceTriangles& interfaces, const DrawingOptions& options) {
   // A legend cannot show more materials than these.
   constexpr std::size_t kMostNames = 24;
@@ -149,6 +162,9 @@ InterfacePicture interface_picture(const InterfaceTriangles& interfaces, const D
   InterfacePicture picture = empty_picture(options);
   const ShownTriangles shown(options.shown, interfaces.materials, "picture");
   std::vector<char> seen(interfaces.materials.size(), 0);
+  std::vector<Colour> colours;
+  for (std::size_t m = 0; m < seen.size(); ++m)
+    colours.push_back(colour_of(options, interfaces.materials, m));
   for (std::size_t t = 0; t < interfaces.triangles.size(); ++t) {
     const auto [front, back] = interfaces.sides[t];
     for (const std::uint32_t m : {front, back}) {
@@ -156,12 +172,12 @@ InterfacePicture interface_picture(const InterfaceTriangles& interfaces, const D
     }
     if (!shown.contains(interfaces.sides[t])) continue;
     seen[front] = seen[back] = 1;
-    picture.triangles.push_back(corners(interfaces.points, interfaces.triangles[t], material_colour(back)));
-    picture.triangles.back().back = material_colour(front);
+    picture.triangles.push_back(corners(interfaces.points, interfaces.triangles[t], colours[back]));
+    picture.triangles.back().back = colours[front];
   }
   if (static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1)) <= kMostNames) {
     for (std::size_t m = 0; m < seen.size(); ++m) {
-      if (seen[m] != 0) picture.materials.push_back({interfaces.materials[m], material_colour(m)});
+      if (seen[m] != 0) picture.materials.push_back({interfaces.materials[m], colours[m]});
     }
   }
   return picture;
@@ -185,8 +201,8 @@ void write_picture(const std::filesystem::path& path, const Slice& slice, const 
   picture.x_label = frame.right_name;
   picture.y_label = frame.up_name;
   picture.field_label = slice.field;
-  picture.panels.push_back(to_panel(slice, frame, options.cells));
-  if (slice.values.empty()) picture.materials = legend_of(slice);
+  picture.panels.push_back(to_panel(slice, frame, options));
+  if (slice.values.empty()) picture.materials = legend_of(slice, options);
   if (options.range) picture.range = ValueRange{(*options.range)[0], (*options.range)[1]};
   SliceOptions size;
   size.width = options.width;

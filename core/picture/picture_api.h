@@ -1,9 +1,18 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
+#include <vector>
+
 #include "adamas/picture.h"
 #include "core/picture/interface_picture.h"
+#include "core/picture/material_colours.h"
 
 namespace adamas::picture {
+
+/// The colour of a material: that of the options, or one by its number. `otherwise`: what gives that one.
+Colour colour_of(const DrawingOptions& options, const std::vector<std::string>& materials, std::size_t number,
+                 Colour (*otherwise)(std::size_t) = material_colour);
 
 /// The picture of the interfaces that options select, with a legend unless there are very many materials.
 /// Throws Error as write_picture does for what cannot be drawn.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,9 @@ struct DrawingOptions {
   std::optional<Box3> focus{};   ///< the box that is shown as large as possible; none: that of the data
   bool triangle_edges = false;   ///< draw the edges of triangles
   std::vector<ShownInterface> shown{};  ///< the interfaces that are shown; empty: all
+
+  /// Colours of materials by name: red, green and blue from 0 to 1. Others get one by their number.
+  std::map<std::string, std::array<double, 3>> colours{};
 };
 
 /// The isosurfaces that a surface consists of, one behind the other in its triangles.

@@ -10,6 +10,7 @@
 #include "interfaces/api/material_totals.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
+#include "interfaces/cutting/input_sets.h"
 
 namespace adamas {
 
@@ -76,6 +77,8 @@ CutMesh cut_mesh(const AdaptiveMesh& mesh, const CutMeshOptions& options, Progre
   contents->materials = whole.materials;
   contents->mesh =
       to_solver_mesh(cut, whole, options.split_bodies ? PointsOfBodies::kSplit : PointsOfBodies::kShared);
+  if (const auto& run = mesh.contents().run; run && run->input && run->input->cells)
+    add_input_sets(*run->input->cells, interface_error + tolerance, contents->mesh);
   return CutMesh(std::move(contents));
 }
 

@@ -119,11 +119,19 @@ void check_reconstruction(const ReconstructionOptions& options, const MultiMater
   check_range(options.fractions);
 }
 
-void refuse_reconstruction(const ReconstructionOptions& options, const char* found) {
+void check_reconstruction(const ReconstructionOptions& options, const MeshData& data) {
   if (options.smooth_labels)
-    wrong_usage("--smooth-labels: expected labels on a grid as INPUT, found {}", found);
+    wrong_usage("--smooth-labels: expected labels on a grid as INPUT, found data on a mesh");
+  if (const std::string option = options.fractions.option(); !option.empty() && !data.labels.empty())
+    wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
+  check_range(options.fractions);
+}
+
+void refuse_reconstruction(const ReconstructionOptions& options) {
+  if (options.smooth_labels)
+    wrong_usage("--smooth-labels: expected labels on a grid as INPUT, found given interfaces");
   if (const std::string option = options.fractions.option(); !option.empty())
-    wrong_usage("{}: expected volume fractions on a grid as INPUT, found {}", option, found);
+    wrong_usage("{}: expected volume fractions as INPUT, found given interfaces", option);
 }
 
 }  // namespace interfaces
@@ -165,8 +173,8 @@ Input::Contents::Contents(InterfaceMesh given, const Box3& domain, const Mending
 
 ResamplingSource Input::Contents::source(const ReconstructionOptions& options, Progress& progress) const {
   if (cells) {
-    refuse_reconstruction(options, "data on a mesh");
-    return make_cells_source(*cells, progress);
+    check_reconstruction(options, *cells);
+    return make_cells_source(*cells, options.fractions, progress);
   }
   if (!mesh) {
     check_reconstruction(options, *data);

@@ -55,8 +55,9 @@ namespace interfaces {
 std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields);
 /// Throws Error where the options are of labels or of volume fractions, and the data have none.
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data);
-/// Throws Error if reconstruction options are set, which are for data on a grid. `found`: what the input is.
-void refuse_reconstruction(const ReconstructionOptions& options, const char* found = "given interfaces");
+void check_reconstruction(const ReconstructionOptions& options, const MeshData& data);
+/// Throws Error if reconstruction options are set, since interfaces are given.
+void refuse_reconstruction(const ReconstructionOptions& options);
 
 }  // namespace interfaces
 

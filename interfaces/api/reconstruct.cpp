@@ -96,9 +96,8 @@ ReconstructedInterfaces take_given(const ResamplingSource& source, const Reconst
 
 ReconstructedInterfaces reconstruct_cells(const MeshData& data, const ReconstructOptions& options,
                                           Progress& progress) {
-  refuse_reconstruction({.smooth_labels = options.smooth_labels, .fractions = options.fractions},
-                        "data on a mesh");
-  MeshReconstruction found = reconstruct_mesh(data, progress);
+  check_reconstruction({.smooth_labels = options.smooth_labels, .fractions = options.fractions}, data);
+  MeshReconstruction found = reconstruct_mesh(data, options.fractions, progress);
   const MeshAgreement agreement = found.agreement;
   const ResamplingSource source = make_cells_source(data, std::move(found), progress);
   ReconstructedInterfaces result = take_given(source, options, progress);
@@ -109,7 +108,8 @@ ReconstructedInterfaces reconstruct_cells(const MeshData& data, const Reconstruc
   for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
     result.materials[m.value].volume_input = source.volumes[m];
     result.materials[m.value].volume_reconstructed = found_volumes[m];
-    if (source.volumes[m] > 0 && !(found_volumes[m] > 0))
+    const bool dispersed = source.findings && is_all_dispersed(*source.findings, m, source.volumes[m]);
+    if (source.volumes[m] > 0 && !(found_volumes[m] > 0) && !dispersed)
       result.lost_materials.push_back({m.value, source.volumes[m], false});
   }
   result.fractions = source.findings;

@@ -37,8 +37,8 @@ std::shared_ptr<const InterfaceNetwork> make_network(const InterfaceMesh& mesh,
 
 }  // namespace
 
-ResamplingSource make_cells_source(const MeshData& data, Progress& progress) {
-  return make_cells_source(data, reconstruct_mesh(data, progress), progress);
+ResamplingSource make_cells_source(const MeshData& data, const FractionOptions& options, Progress& progress) {
+  return make_cells_source(data, reconstruct_mesh(data, options, progress), progress);
 }
 
 ResamplingSource make_cells_source(const MeshData& data, MeshReconstruction&& reconstruction,
@@ -48,17 +48,22 @@ ResamplingSource make_cells_source(const MeshData& data, MeshReconstruction&& re
   source.name = data.source;
   source.box = data.mesh.box();
   source.materials = reconstruction.mesh.materials;
-  source.volumes = data.volumes();
+  const IdVector<MaterialId, double> stated = data.volumes();
+  source.volumes = stated;
   if (!data.mesh.fills_box()) add_outside(data, source);
   source.voxel = data.mesh.typical_size();
   if (data.labels.empty()) source.findings = std::move(reconstruction.agreement.findings);
   const std::shared_ptr<const InterfaceNetwork> network = make_network(reconstruction.mesh, source);
   source.network = network;
   if (!network->triangles().empty()) {
+    // What is dispersed is in other materials' bodies.
+    IdVector<MaterialId, double> wanted = source.volumes;
+    for (MaterialId m(0); m.value < stated.size(); ++m.value)
+      wanted[m] += reconstruction.agreement.volumes[m] - stated[m];
     NetworkMeasures measures = measure_network(*network, source.box, source.materials.size());
     for (BodyId b(0); b.value < measures.body_volumes.size(); ++b.value) {
       const MaterialId m = network->table().material(b);
-      if (measures.volumes[m] > 0) measures.body_volumes[b] *= source.volumes[m] / measures.volumes[m];
+      if (measures.volumes[m] > 0) measures.body_volumes[b] *= wanted[m] / measures.volumes[m];
     }
     source.body_volumes = std::move(measures.body_volumes);
     for (InterfaceId i(0); source.findings && i.value < measures.areas.size(); ++i.value) {

@@ -12,7 +12,8 @@ namespace adamas::interfaces {
 /// more material, kOutside, without fields. `data` must outlive the source.
 ResamplingSource make_cells_source(const MeshData& data, MeshReconstruction&& reconstruction,
                                    Progress& progress = SilentProgress::instance());
-/// The same with interfaces reconstructed here.
-ResamplingSource make_cells_source(const MeshData& data, Progress& progress = SilentProgress::instance());
+/// The same with interfaces reconstructed here. `options`: of fractions.
+ResamplingSource make_cells_source(const MeshData& data, const FractionOptions& options = {},
+                                   Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::interfaces

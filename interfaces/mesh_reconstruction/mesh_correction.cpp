@@ -14,7 +14,11 @@
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
+#include "interfaces/mesh_reconstruction/mesh_dispersed.h"
+#include "interfaces/mesh_reconstruction/mesh_errors.h"
 #include "interfaces/mesh_reconstruction/mesh_start.h"
+#include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -58,8 +62,11 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 class Diffusion {
  public:
   /// `widths`: the standard deviations as lengths, by entry of active cells.
-  Diffusion(const MeshValues& values, std::vector<double> widths)
-      : values_(values), widths_(std::move(widths)), place_(values.subdivision().mesh().cell_count(), kNone) {
+  Diffusion(const MeshValues& values, const MeshWalls& walls, std::vector<double> widths)
+      : values_(values),
+        walls_(walls),
+        widths_(std::move(widths)),
+        place_(values.subdivision().mesh().cell_count(), kNone) {
     const std::vector<Index>& active = values.active_cells();
     double most = 0;
     firsts_.push_back(0);
@@ -102,12 +109,14 @@ class Diffusion {
   /// Adds the sides of a cell; returns the sum of the rates of its faces.
   double add_sides(Index c) {
     const PolyhedralMesh& mesh = values_.subdivision().mesh();
-    if (!(mesh.cell_volume(c) > 0)) return 0;
+    // Nothing passes the faces of walls.
+    if (!(mesh.cell_volume(c) > 0) || walls_.fills(c)) return 0;
     const double least = kLeastDistance * values_.size(c);
     double rate = 0;
     Vec3 open;  // the area of the cell's faces at the boundary
     for (const Index f : mesh.faces_of_cell(c)) {
       const Index other = mesh.neighbour(c, f);
+      if (other != PolyhedralMesh::kNone && walls_.fills(other)) continue;
       const Vec3 area = face_area(f);
       if (other == PolyhedralMesh::kNone) {
         open += area;
@@ -141,6 +150,7 @@ class Diffusion {
     std::vector<Index> ring;
     const std::array<Index, 1> self{c};
     subdivision.find_ring(self, ring);
+    std::erase_if(ring, [this](Index other) { return walls_.fills(other); });
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     std::vector<Eigen::Vector3d> rows;
     for (const Index other : ring) {
@@ -167,6 +177,7 @@ class Diffusion {
     double rate;
   };
   const MeshValues& values_;
+  const MeshWalls& walls_;
   std::vector<double> widths_;
   std::vector<std::uint32_t> place_;               // by cell: its place among active ones, or kNone
   std::vector<std::size_t> firsts_, first_sides_;  // by active cell: its first entry and side
@@ -177,21 +188,44 @@ class Diffusion {
 
 class Correction {
  public:
-  Correction(const MeshData& data, MeshValues& values, Progress& progress)
-      : data_(data), values_(values), progress_(progress), volumes_(values) {}
+  /// `dispersed`: the volumes that were taken out, by material of the data.
+  Correction(const MeshData& data, MeshValues& values, MeshWalls walls, Steps steps,
+             std::vector<double> dispersed, Progress& progress)
+      : data_(data),
+        values_(values),
+        walls_(std::move(walls)),
+        progress_(progress),
+        volumes_(values),
+        found_(std::move(steps.widths)),
+        extents_(std::move(steps.extents)) {
+    agreement_.volumes = volumes_without(dispersed);
+    agreement_.findings.dispersed = std::move(dispersed);
+  }
 
-  MeshAgreement run() {
-    const Steps steps = find_steps(data_, values_);
-    extents_ = steps.extents;
-    const std::vector<double>& found = steps.widths;
-    const double widest = found.empty() ? 0 : *std::ranges::max_element(found);
+  /// `known`: whether the widths are known to be right. `error`: the standard deviation of errors of
+  /// fractions, where that is known.
+  MeshAgreement run(bool known, const std::optional<double>& error) {
+    const double widest = found_.empty() ? 0 : *std::ranges::max_element(found_);
     // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
-    if (widest < kSurelyBlurred) {
-      correct(std::vector<double>(found.size(), 0.0));
-      if (agreement_.cells.mean_difference > kFits) correct(found);
-    } else {
-      correct(found);
+    const bool unsure = widest < kSurelyBlurred && !known;
+    const std::vector<double> sharp(found_.size(), 0.0);
+    start(unsure ? sharp : found_);
+    double deviation = error ? *error : deviation_of_errors();
+    if (unsure && deviation > SiteValues::kLeastError) {
+      // Steps are as wide as explains the fractions better.
+      start(found_);
+      const double of_blurred = error ? *error : deviation_of_errors();
+      const bool blurred = of_blurred < deviation;
+      deviation = std::min(of_blurred, deviation);
+      if (!blurred || deviation <= SiteValues::kLeastError) start(sharp);
     }
+    if (deviation > SiteValues::kLeastError) smooth(deviation);
+    correct();
+    if (unsure && deviation_ == 0 && agreement_.cells.mean_difference > kFits) {
+      start(found_);
+      correct();
+    }
+    agreement_.findings.fraction_error = error.value_or(deviation_);
     if (values_.active_cells().empty()) return agreement_;
     close_totals();
     measure(false);
@@ -200,14 +234,51 @@ class Correction {
   }
 
  private:
-  /// Corrects values for steps of these widths.
-  void correct(const std::vector<double>& widths) {
+  /// Returns the volumes of materials after dispersed parts were given to the others in their cells.
+  [[nodiscard]] IdVector<MaterialId, double> volumes_without(const std::vector<double>& dispersed) const {
+    IdVector<MaterialId, double> volumes = data_.volumes();
+    if (std::ranges::all_of(dispersed, [](double volume) { return volume == 0; })) return volumes;
+    for (MaterialId m(0); m.value < volumes.size(); ++m.value) volumes[m] -= dispersed[m.value];
+    for (std::size_t c = 0; c < data_.mesh.cell_count(); ++c) {
+      for (const Entry& entry : std::as_const(values_).at(c)) {
+        if (entry.fraction <= 0) continue;
+        const MaterialId m = values_.material(entry.material);
+        volumes[m] += data_.mesh.cell_volume(c) *
+                      (static_cast<double>(entry.fraction) - static_cast<double>(data_.fraction(m, c)));
+      }
+    }
+    return volumes;
+  }
+
+  /// Sets the values from which those of steps of these widths are corrected.
+  void start(const std::vector<double>& widths) {
     widths_ = widths;
+    set_start_values(data_, widths, extents_, walls_, values_);
+    find_blur();
+    errors_.emplace(widths_, extents_, values_);
+  }
+
+  [[nodiscard]] double deviation_of_errors() const {
+    return errors_->deviation(agreement_.findings.blur_median);
+  }
+
+  /// Smooths values and fractions within the errors of the fractions.
+  void smooth(double deviation) {
+    for (const Index c : values_.active_cells()) {
+      for (const Entry& entry : std::as_const(values_).at(c)) given_.push_back(entry.fraction);
+    }
+    deviation_ = deviation;
+    errors_->smooth(deviation, values_);
+    // The cells themselves blur sharp fractions, so that errors are not held to the end.
+    for (double& width : widths_) width = std::max(width, kUniformDeviation);
+  }
+
+  /// Corrects values in rounds.
+  void correct() {
     blurs_.clear();
     diffusion_.reset();
-    set_start_values(data_, widths, extents_, values_);
-    find_blur();
     if (values_.active_cells().empty()) return;
+    const std::vector<double>& widths = widths_;
     const bool blurred = std::ranges::any_of(widths, [](double width) { return width > 0; });
     if (blurred) {
       // The cells themselves are a part of the width.
@@ -218,7 +289,7 @@ class Correction {
         for (const Entry& entry : std::as_const(values_).at(c))
           lengths.push_back(blurs_[entry.material] * extents_[lengths.size()]);
       }
-      diffusion_.emplace(values_, std::move(lengths));
+      diffusion_.emplace(values_, walls_, std::move(lengths));
     }
     const int most = blurred ? kRoundsBlurred : kMostRounds;
     double before = std::numeric_limits<double>::infinity();
@@ -250,14 +321,15 @@ class Correction {
     if (diffusion_ && compared) diffusion_->run(shown_);
     if (!compared) return;
     CellAgreement& found = agreement_.cells;
-    found = {.tolerance = diffusion_ ? kToleranceBlurred : kTolerance};
+    found = {.tolerance = std::max(diffusion_ ? kToleranceBlurred : kTolerance, 3 * deviation_)};
     double sum = 0;
     std::size_t at = 0;
     for (const Index c : active) {
       double off = 0;
       bool is_mixed = false;
       for (const Entry& entry : std::as_const(values_).at(c)) {
-        off = std::max(off, std::abs(shown_[at++] - static_cast<double>(entry.fraction)));
+        const float given = given_.empty() ? entry.fraction : given_[at];
+        off = std::max(off, std::abs(shown_[at++] - static_cast<double>(given)));
         is_mixed = is_mixed || (entry.fraction > 0 && entry.fraction < 1);
       }
       if (!is_mixed) {
@@ -279,8 +351,8 @@ class Correction {
 
   /// Sets the findings about widths of steps in mixed cells.
   void find_blur() {
-    FractionFindings& findings = agreement_.findings = {};
-    findings.dispersed.assign(data_.materials.size(), 0.0);
+    FractionFindings& findings = agreement_.findings;
+    findings = {.dispersed = std::move(findings.dispersed)};
     std::vector<double> of_cells;
     std::size_t mixed = 0;
     for (const Index c : values_.active_cells()) {
@@ -331,11 +403,15 @@ class Correction {
         moves.push_back(std::clamp(by, -kMostMove * extent, kMostMove * extent));
       }
     }
-    if (diffusion_) continue_moves(moves);
+    if (diffusion_) {
+      errors_->take_means(moves);
+      continue_moves(moves);
+    }
     at = 0;
     for (const Index c : active) {
       for (Entry& entry : values_.at(c)) entry.value += moves[at++];
     }
+    if (diffusion_) walls_.set_values(values_);
   }
 
   /// Replaces the moves of blurred materials near the boundary, beyond which nobody knows what blurred
@@ -454,7 +530,7 @@ class Correction {
   /// Moves all values of each material by one offset until it has its volume.
   void close_totals() {
     const std::size_t count = values_.material_count();
-    const IdVector<MaterialId, double> wanted = data_.volumes();
+    const IdVector<MaterialId, double>& wanted = agreement_.volumes;
     const PolyhedralMesh& mesh = data_.mesh;
     const std::vector<Index>& active = values_.active_cells();
     double domain = 0;
@@ -476,17 +552,24 @@ class Correction {
         for (std::size_t e = 0; e < own.size(); ++e) owned[own[e].material] += volume * volumes_.parts(n)[e];
         for (const auto& [a, b, growth] : volumes_.exchanges(n)) exchanged[{a, b}] += volume * growth;
       }
-      const auto size = static_cast<Eigen::Index>(count);
+      // The unknowns are the offsets of materials that have interfaces.
+      std::vector<int> unknown(count, -1);
+      for (const auto& [pair, by] : exchanged) unknown[pair.first] = unknown[pair.second] = 0;
+      int size = 0;
+      for (int& of_one : unknown) of_one = of_one == 0 ? size++ : -1;
+      double most_missing = 0;
       Eigen::VectorXd missing(size);
-      for (std::size_t m = 0; m < count; ++m)
-        missing[static_cast<Eigen::Index>(m)] =
-            wanted[values_.material(static_cast<std::uint16_t>(m))] - owned[m];
-      if (missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
+      for (std::size_t m = 0; m < count; ++m) {
+        const double own = wanted[values_.material(static_cast<std::uint16_t>(m))] - owned[m];
+        most_missing = std::max(most_missing, std::abs(own));
+        if (unknown[m] >= 0) missing[unknown[m]] = own;
+      }
+      if (most_missing <= kTotalTolerance * domain || size == 0) return;
       missing.array() -= missing.mean();
       std::vector<Eigen::Triplet<double>> triplets;
       double greatest = 0;
       for (const auto& [pair, by] : exchanged) {
-        const int a = pair.first, b = pair.second;
+        const int a = unknown[pair.first], b = unknown[pair.second];
         triplets.emplace_back(a, a, by), triplets.emplace_back(b, b, by);
         triplets.emplace_back(a, b, -by), triplets.emplace_back(b, a, -by);
         greatest = std::max(greatest, by);
@@ -500,22 +583,39 @@ class Correction {
       offsets.array() -= offsets.mean();
       for (const Index c : active) {
         const double most = kMostMove * values_.size(c);
-        for (Entry& entry : values_.at(c)) entry.value += std::clamp(offsets[entry.material], -most, most);
+        for (Entry& entry : values_.at(c)) {
+          if (unknown[entry.material] >= 0)
+            entry.value += std::clamp(offsets[unknown[entry.material]], -most, most);
+        }
       }
     }
   }
 
   const MeshData& data_;
   MeshValues& values_;
+  MeshWalls walls_;
   Progress& progress_;
   MeshVolumes volumes_;
-  std::vector<double> extents_;  // by entry of active cells (Steps)
-  std::vector<double> widths_;   // by material, in extents of cells; 0 for a sharp one
-  std::vector<double> blurs_;    // those without the part of the cells
+  std::vector<double> found_, extents_;  // widths and extents (Steps)
+  std::vector<double> widths_;           // by material, in extents of cells; 0 for a sharp one
+  std::vector<double> blurs_;            // those without the part of the cells
   std::optional<Diffusion> diffusion_;
+  std::optional<MeshErrors> errors_;
+  double deviation_ = 0;       // of errors of fractions, if they were smoothed
+  std::vector<float> given_;   // by entry of active cells: fractions before they were smoothed
   std::vector<double> shown_;  // by entry of active cells
   MeshAgreement agreement_;
 };
+
+/// Makes materials sharp that have at most half of every cell; blurred, they would own nothing.
+void set_faint_sharp(const MeshValues& values, std::vector<double>& widths) {
+  std::vector<float> most(widths.size(), 0);
+  for (const Index c : values.active_cells()) {
+    for (const Entry& entry : values.at(c))
+      most[entry.material] = std::max(most[entry.material], entry.fraction);
+  }
+  for (std::size_t n = 0; n < widths.size(); ++n) widths[n] = most[n] <= 0.5f ? 0 : widths[n];
+}
 
 }  // namespace
 
@@ -586,8 +686,26 @@ void MeshVolumes::measure_cell(std::size_t n, bool growth) {
   });
 }
 
-MeshAgreement correct_values(const MeshData& data, MeshValues& values, Progress& progress) {
-  return Correction(data, values, progress).run();
+MeshAgreement correct_values(const MeshData& data, const FractionOptions& options, MeshValues& values,
+                             Progress& progress) {
+  MeshWalls walls;
+  Steps steps = find_steps(data, walls, values);
+  std::vector<double> dispersed(data.materials.size(), 0);
+  if (!options.keep_dispersed) dispersed = take_dispersed(steps.widths, values);
+  if (std::ranges::any_of(dispersed, [](double volume) { return volume > 0; }))
+    steps = find_steps(data, walls, values);
+  set_faint_sharp(values, steps.widths);
+  const auto is_blurred = [](double width) { return width >= kSurelyBlurred; };
+  if (std::ranges::any_of(steps.widths, is_blurred)) walls = MeshWalls(values);
+  if (walls.any()) {
+    steps = find_steps(data, walls, values);
+    set_faint_sharp(values, steps.widths);
+  }
+  const std::optional<double> known = options.known_blur();
+  if (known)
+    steps.widths.assign(steps.widths.size(), *known > 0 ? std::sqrt(*known * *known + kCellVariance) : 0);
+  return Correction(data, values, std::move(walls), std::move(steps), std::move(dispersed), progress)
+      .run(known.has_value(), options.known_error());
 }
 
 }  // namespace adamas::interfaces

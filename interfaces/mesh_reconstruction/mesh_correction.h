@@ -13,12 +13,15 @@ struct MeshAgreement {
   FractionFindings findings;  ///< without the areas
   CellAgreement cells;
   std::vector<LostPlace> lost;  ///< groups of cells that hold a material of which nothing is shown there
+  /// The volumes that the interfaces are to enclose: those of the input without dispersed parts.
+  IdVector<MaterialId, double> volumes;
 };
 
-/// Sets values so that cells hold their fractions: distances from planes that cut off the fractions of sharp
-/// materials, or those that a blurred step has, corrected in rounds by the volumes in the cells; then closes
-/// the total of each material.
-MeshAgreement correct_values(const MeshData& data, MeshValues& values, Progress& progress);
+/// Takes dispersed fractions out, and sets values so that cells hold their fractions: distances from planes
+/// that cut off the fractions of sharp materials, or those that a blurred step has, corrected in rounds by
+/// the volumes in the cells; then closes the total of each material.
+MeshAgreement correct_values(const MeshData& data, const FractionOptions& options, MeshValues& values,
+                             Progress& progress);
 
 /// The volumes that materials own in active cells, as parts of the cells.
 class MeshVolumes {

@@ -5,12 +5,17 @@
 
 namespace adamas::interfaces {
 
-MeshReconstruction reconstruct_mesh(const MeshData& data, Progress& progress) {
-  if (!data.labels.empty()) return {interfaces_of_labels(data), {}};
+MeshReconstruction reconstruct_mesh(const MeshData& data, const FractionOptions& options,
+                                    Progress& progress) {
+  if (!data.labels.empty()) {
+    MeshReconstruction result{interfaces_of_labels(data), {}};
+    result.agreement.volumes = data.volumes();
+    return result;
+  }
   progress.step("finding materials near cells", -1);
   const MeshSubdivision subdivision(data.mesh);
   MeshValues values(data, subdivision);
-  const MeshAgreement agreement = correct_values(data, values, progress);
+  const MeshAgreement agreement = correct_values(data, options, values, progress);
   return {interfaces_of_values(data, values, progress), agreement};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "adamas/fractions.h"
 #include "adamas/progress.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/mesh_data.h"
@@ -13,7 +14,8 @@ struct MeshReconstruction {
   MeshAgreement agreement;
 };
 
-/// Reconstructs the interfaces of volume fractions or labels.
-MeshReconstruction reconstruct_mesh(const MeshData& data, Progress& progress);
+/// Reconstructs the interfaces of volume fractions or labels. `options`: of fractions.
+MeshReconstruction reconstruct_mesh(const MeshData& data, const FractionOptions& options = {},
+                                    Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::interfaces

@@ -41,8 +41,8 @@ struct CellPlane {
 
 class Start {
  public:
-  Start(const MeshData& data, MeshValues& values)
-      : values_(values), mesh_(data.mesh), subdivision_(values.subdivision()) {}
+  Start(const MeshData& data, const MeshWalls& walls, MeshValues& values)
+      : values_(values), mesh_(data.mesh), subdivision_(values.subdivision()), walls_(walls) {}
 
   Steps steps() {
     find_gradients_of_fractions();
@@ -154,7 +154,7 @@ class Start {
       Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
       std::vector<Eigen::Vector3d> right(own.size(), Eigen::Vector3d::Zero());
       for (const Index other : ring) {
-        if (other == c) continue;
+        if (other == c || walls_.fills(other)) continue;
         const Vec3 d = mesh_.cell_center(other) - mesh_.cell_center(c);
         const Eigen::Vector3d row(d.x, d.y, d.z);
         const double w = 1 / squared_norm(d);
@@ -227,7 +227,7 @@ class Start {
     std::vector<std::array<double, 2>> round;  // heights along the gradient, with weights
     double squares = 0;
     for (const Index other : ring) {
-      if (other == c) continue;
+      if (other == c || walls_.fills(other)) continue;
       const Vec3 d = mesh_.cell_center(other) - mesh_.cell_center(c);
       const double height = dot(d, towards) / size, weight = size * size / squared_norm(d);
       round.push_back({height, weight});
@@ -405,17 +405,22 @@ class Start {
   MeshValues& values_;
   const PolyhedralMesh& mesh_;
   const MeshSubdivision& subdivision_;
+  const MeshWalls& walls_;
   std::vector<std::vector<Vec3>> gradients_;  // by cell and entry; empty for cells without mixed entries
   std::vector<std::vector<std::optional<CellPlane>>> planes_;  // in the same way
 };
 
 }  // namespace
 
-Steps find_steps(const MeshData& data, MeshValues& values) { return Start(data, values).steps(); }
+Steps find_steps(const MeshData& data, const MeshWalls& walls, MeshValues& values) {
+  return Start(data, walls, values).steps();
+}
 
 void set_start_values(const MeshData& data, const std::vector<double>& widths,
-                      const std::vector<double>& extents, MeshValues& values) {
-  Start(data, values).run(widths, extents);
+                      const std::vector<double>& extents, MeshWalls& walls, MeshValues& values) {
+  Start(data, walls, values).run(widths, extents);
+  walls.keep_distances(values);
+  if (std::ranges::any_of(widths, [](double width) { return width > 0; })) walls.set_values(values);
 }
 
 }  // namespace adamas::interfaces

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
@@ -15,6 +16,24 @@ namespace {
 constexpr double kLeastSpread = 0.1;
 /// Slopes in directions in which the cells do not extend are kept at 0 by this part of the others' weight.
 constexpr double kNoSlope = 1e-9;
+
+/// A set of numbers that is cheap to empty.
+class Marks {
+ public:
+  /// Empties the set; numbers are less than `count`.
+  void clear(std::size_t count) {
+    if (rounds_.size() < count) rounds_.resize(count, 0);
+    if (++round_ != 0) return;
+    std::ranges::fill(rounds_, 0);
+    round_ = 1;
+  }
+  /// Adds a number; returns whether it is new.
+  bool add(std::size_t n) { return std::exchange(rounds_[n], round_) != round_; }
+
+ private:
+  std::vector<std::uint32_t> rounds_;
+  std::uint32_t round_ = 0;
+};
 
 }  // namespace
 
@@ -30,14 +49,19 @@ Vec3 MeshSubdivision::position(Index point) const {
 }
 
 void MeshSubdivision::find_ring(std::span<const Index> cells, std::vector<Index>& ring) const {
+  thread_local Marks points, found;
+  points.clear(mesh_.points().size());
+  found.clear(mesh_.cell_count());
   ring.clear();
   for (const Index c : cells) {
     for (const Index p : mesh_.points_of_cell(c)) {
-      const std::span<const Index> round = mesh_.cells_round(p);
-      ring.insert(ring.end(), round.begin(), round.end());
+      if (!points.add(p)) continue;
+      for (const Index other : mesh_.cells_round(p)) {
+        if (found.add(other)) ring.push_back(other);
+      }
     }
   }
-  sort_unique(ring);
+  std::ranges::sort(ring);
 }
 
 void MeshSubdivision::find_stencil(Index point, Stencil& stencil) const {

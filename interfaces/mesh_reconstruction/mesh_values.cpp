@@ -26,15 +26,34 @@ void unite(std::vector<std::uint16_t>& list, std::span<const std::uint16_t> othe
 
 MeshValues::MeshValues(const MeshData& data, const MeshSubdivision& subdivision)
     : subdivision_(subdivision), by_name_(materials_by_name(data.materials)) {
-  const PolyhedralMesh& mesh = data.mesh;
+  std::vector<std::vector<Held>> held(data.mesh.cell_count());
+  for (std::uint16_t n = 0; n < by_name_.size(); ++n) {
+    for (std::size_t c = 0; c < held.size(); ++c) {
+      if (const float fraction = data.fraction(by_name_[n], c); fraction > 0)
+        held[c].push_back({n, fraction});
+    }
+  }
+  find_entries(held);
+}
+
+void MeshValues::drop_absent() {
+  std::vector<std::vector<Held>> held(subdivision_.mesh().cell_count());
+  for (std::size_t c = 0; c < held.size(); ++c) {
+    for (const Entry& entry : at(c)) {
+      if (entry.fraction > 0) held[c].push_back({entry.material, entry.fraction});
+    }
+  }
+  find_entries(held);
+}
+
+/// `held`: what each cell holds, ascending by number.
+void MeshValues::find_entries(const std::vector<std::vector<Held>>& held) {
+  const PolyhedralMesh& mesh = subdivision_.mesh();
   const std::size_t cells = mesh.cell_count();
   // The materials of cells spread over points: from cells to their points and back is one ring.
   std::vector<std::vector<std::uint16_t>> of_cells(cells), of_points(mesh.points().size());
-  for (std::uint16_t n = 0; n < by_name_.size(); ++n) {
-    const MaterialId m = by_name_[n];
-    for (std::size_t c = 0; c < cells; ++c) {
-      if (data.fraction(m, c) > 0) of_cells[c].push_back(n);
-    }
+  for (std::size_t c = 0; c < cells; ++c) {
+    for (const Held& own : held[c]) of_cells[c].push_back(own.material);
   }
   for (int ring = 0; ring < kRings; ++ring) {
     parallel_for(of_points.size(), 1024, [&](std::size_t p) {
@@ -48,34 +67,49 @@ MeshValues::MeshValues(const MeshData& data, const MeshSubdivision& subdivision)
       sort_unique(of_cells[c]);
     });
   }
-  first_entries_.push_back(0);
+  first_entries_.assign(1, 0);
+  entries_.clear(), active_.clear(), place_of_point_.clear();
   double widest = 0;
   for (std::size_t c = 0; c < cells; ++c) {
-    for (const std::uint16_t n : of_cells[c]) entries_.push_back({n, data.fraction(by_name_[n], c), 0});
+    for (const std::uint16_t n : of_cells[c]) {
+      const auto own = std::ranges::find(held[c], n, &Held::material);
+      entries_.push_back({n, own == held[c].end() ? 0 : own->fraction, 0});
+    }
     first_entries_.push_back(static_cast<std::uint32_t>(entries_.size()));
     if (of_cells[c].size() > 1) active_.push_back(static_cast<Index>(c));
     widest = std::max(widest, size(c));
   }
   far_ = -32 * widest;
+}
+
+/// Finds the points of active cells, and which values they have.
+void MeshValues::find_points() {
+  const PolyhedralMesh& mesh = subdivision_.mesh();
+  points_.clear();
   for (const Index c : active_) {
     const std::span<const Index> round = mesh.points_of_cell(c);
     points_.insert(points_.end(), round.begin(), round.end());
-    for (const Index f : mesh.faces_of_cell(c)) points_.push_back(subdivision.face_center(f));
+    for (const Index f : mesh.faces_of_cell(c)) points_.push_back(subdivision_.face_center(f));
   }
   sort_unique(points_);
-  place_of_point_.assign(subdivision.cell_center(0), kNone);
+  place_of_point_.assign(subdivision_.cell_center(0), kNone);
   for (std::uint32_t n = 0; n < points_.size(); ++n) place_of_point_[points_[n]] = n;
   stencils_.resize(points_.size());
   parallel_for(points_.size(), 256,
-               [&](std::size_t n) { subdivision.find_stencil(points_[n], stencils_[n]); });
+               [&](std::size_t n) { subdivision_.find_stencil(points_[n], stencils_[n]); });
   owners_.assign(points_.size(), 0);
-  first_of_point_.push_back(0);
+  first_of_point_.assign(1, 0);
+  of_points_.clear();
   std::vector<std::uint16_t> common;
   for (const MeshSubdivision::Stencil& stencil : stencils_) {
     // The materials that all cells of the stencil have entries of.
-    common = of_cells[stencil.cells[0]];
-    for (const Index c : stencil.cells)
-      std::erase_if(common, [&](std::uint16_t n) { return !std::ranges::binary_search(of_cells[c], n); });
+    common.clear();
+    for (const Entry& entry : at(stencil.cells[0])) common.push_back(entry.material);
+    for (const Index c : stencil.cells) {
+      std::erase_if(common, [&](std::uint16_t n) {
+        return std::ranges::none_of(at(c), [&](const Entry& entry) { return entry.material == n; });
+      });
+    }
     for (const std::uint16_t n : common) of_points_.push_back({n, 0});
     first_of_point_.push_back(static_cast<std::uint32_t>(of_points_.size()));
   }
@@ -106,6 +140,7 @@ double MeshValues::extent(Index cell, const Vec3& direction) const {
 }
 
 void MeshValues::interpolate() {
+  if (place_of_point_.empty()) find_points();
   parallel_for(points_.size(), 1024, [&](std::size_t n) {
     const auto& [cells, weights] = stencils_[n];
     for (std::uint32_t e = first_of_point_[n]; e < first_of_point_[n + 1]; ++e) {

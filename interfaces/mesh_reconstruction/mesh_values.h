@@ -25,8 +25,11 @@ class MeshValues {
     double value;  ///< a signed distance, positive inside the material
   };
 
-  /// Finds the entries; values are not set. The data and the subdivision must outlive this object.
+  /// Finds the entries; values are not set. The subdivision must outlive this object.
   MeshValues(const MeshData& data, const MeshSubdivision& subdivision);
+
+  /// Finds the entries again, after fractions have become 0. Values are not kept.
+  void drop_absent();
 
   [[nodiscard]] const MeshSubdivision& subdivision() const { return subdivision_; }
   [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
@@ -61,6 +64,12 @@ class MeshValues {
     std::uint16_t material;
     double value;
   };
+  struct Held {
+    std::uint16_t material;
+    float fraction;
+  };
+  void find_entries(const std::vector<std::vector<Held>>& held);
+  void find_points();
   [[nodiscard]] std::span<const PointEntry> at_point(Index point) const;
   template <class Entries>
   [[nodiscard]] static std::uint16_t greatest(const Entries& entries);

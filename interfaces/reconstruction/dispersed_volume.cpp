@@ -1,9 +1,9 @@
 #include "interfaces/reconstruction/dispersed_volume.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/sort_unique.h"
+#include "interfaces/reconstruction/dispersed_criterion.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_box.h"
 #include "interfaces/reconstruction/site_values.h"
@@ -13,16 +13,7 @@ namespace adamas::interfaces {
 namespace {
 
 using Entry = SiteValues::Entry;
-
-/// A material is dispersed at a site if no cell within reach holds kLittle of it, and at least kMost of the
-/// cells within kNear sites along each axis hold about as much: more than layers would cut.
-constexpr float kLittle = 0.25f;
-constexpr std::size_t kNear = 2;
-constexpr double kMost = 0.55;
-/// Fractions are alike if neither is more than this many times the other.
-constexpr float kAlike = 3;
-/// The reach in cells, and how it grows with the greatest width of the material's steps.
-constexpr int kReach = 4, kFarthestReach = 10;
+using Is = DispersedCriterion;
 
 class DispersedSearch {
  public:
@@ -35,7 +26,7 @@ class DispersedSearch {
     std::vector<std::vector<std::uint32_t>> little(data_.materials.size());
     for (const std::uint32_t site : values_.mixed_sites()) {
       for (const Entry& entry : values_.at(site)) {
-        if (!entry.is_pure() && entry.fraction < kLittle) little[entry.material].push_back(site);
+        if (!entry.is_pure() && entry.fraction < Is::kLittle) little[entry.material].push_back(site);
       }
     }
     std::vector<std::uint32_t> changed;
@@ -44,10 +35,7 @@ class DispersedSearch {
       for (const std::uint32_t site : dispersed(number, little[number])) {
         Entry& entry = *find_entry(values_.at(site), number);
         // A cell's only material is not taken out.
-        if (std::ranges::none_of(values_.at(site), [&](const Entry& other) {
-              return other.material != number && other.fraction > 0;
-            }))
-          continue;
+        if (!holds_another(values_.at(site), number)) continue;
         changed.push_back(site);
         if (keep) {
           for (Entry& each : values_.at(site)) each.width = 0;
@@ -59,7 +47,14 @@ class DispersedSearch {
         entry.width = 0;
       }
     }
-    if (!keep) give_to_others(changed);
+    if (keep) return taken;
+    sort_unique(changed);
+    for (const std::uint32_t site : changed) {
+      if (!give_to_others(values_.at(site))) continue;
+      for (Entry& entry : values_.at(site)) {
+        if (entry.fraction > 0) entry.width = 0;
+      }
+    }
     return taken;
   }
 
@@ -70,11 +65,10 @@ class DispersedSearch {
     double widest = 0;
     for (const std::uint32_t site : little)
       widest = std::max(widest, values_.width(*find_entry(values_.at(site), number)));
-    const int reach =
-        std::min(kReach + static_cast<int>(std::ceil(widest / data_.grid.least_spacing())), kFarthestReach);
+    const int reach = Is::reach(widest / data_.grid.least_spacing());
     const SiteBox box = SiteBox::round(data_.grid, little, static_cast<std::size_t>(reach));
     std::vector<std::uint8_t> much(box.size());
-    box.for_each([&](std::size_t place, std::size_t site) { much[place] = fractions[site] >= kLittle; });
+    box.for_each([&](std::size_t place, std::size_t site) { much[place] = fractions[site] >= Is::kLittle; });
     for (const SheetPlace& place : sheets_.places) {
       if (place.material == number && box.contains(place.site)) much[box.place(place.site)] = 1;
     }
@@ -87,33 +81,14 @@ class DispersedSearch {
     return found;
   }
 
-  static bool is_alike(float a, float b) { return a * kAlike >= b && a <= b * kAlike; }
-
   /// Returns whether most of the cells near a site hold about as much as it does.
   [[nodiscard]] bool is_everywhere(std::size_t site, const SiteArray<float>& fractions) const {
     std::size_t holding = 0, cells = 0;
-    sites_.for_each_within(site, kNear, [&](std::size_t other, int, int, int) {
-      holding += is_alike(fractions[other], fractions[site]) ? 1 : 0;
+    sites_.for_each_within(site, Is::kNear, [&](std::size_t other, int, int, int) {
+      holding += Is::is_alike(fractions[other], fractions[site]) ? 1 : 0;
       ++cells;
     });
-    return static_cast<double>(holding) >= kMost * static_cast<double>(cells);
-  }
-
-  /// Scales the remaining fractions at sites so that their sum is 1.
-  void give_to_others(std::vector<std::uint32_t>& changed) {
-    sort_unique(changed);
-    for (const std::uint32_t site : changed) {
-      const std::span<Entry> own = values_.at(site);
-      float sum = 0;
-      for (const Entry& entry : own) sum += entry.fraction;
-      int left = 0;
-      for (const Entry& entry : own) left += entry.fraction > 0 ? 1 : 0;
-      for (Entry& entry : own) {
-        if (entry.fraction <= 0) continue;
-        entry.fraction = left == 1 ? 1 : std::min(entry.fraction / sum, 1 - kFractionTrace);
-        if (left == 1) entry.width = 0;
-      }
-    }
+    return Is::is_most(holding, cells);
   }
 
   const MultiMaterialData& data_;

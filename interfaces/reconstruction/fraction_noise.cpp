@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/base/loop_progress.h"
-#include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
+#include "interfaces/reconstruction/error_criterion.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
@@ -27,24 +27,9 @@ using Entry = SiteValues::Entry;
 
 /// The parts of the time that distances take until errors are estimated, and until all sites are predicted.
 constexpr double kEstimateShare = 0.2, kPredictedShare = 0.9;
-/// Neighbours count up to this distance in sites, along each axis and squared.
+/// Neighbours count up to this distance in sites along each axis.
 constexpr std::size_t kReach = 2;
-constexpr int kSquaredReach = 5;
-/// The least number of neighbours for a surface.
-constexpr std::size_t kLeastNeighbours = 14;
-/// The least sum of the neighbours' weights; with less they are too far from the interface.
-constexpr double kLeastWeight = 0.05;
-/// Noise is estimated from fractions between kLeastClear and 1 - kLeastClear, of about kMostCells cells at
-/// most, and only if there are kLeastCells.
-constexpr double kLeastClear = 0.02;
-constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
-/// The noise is unknown if less than this part of the cells can be predicted.
-constexpr double kLeastPart = 0.1;
-/// Squared differences above this many times the squared noise are not noise.
-constexpr double kBeyond = 2;
-/// Sharp interfaces differ from the prediction by this times the square of the mean curvature even without
-/// errors.
-constexpr double kOfCurved = 0.5;
+constexpr int kSquaredReach = ErrorCriterion::kSquaredReach;
 
 /// The prediction of a smooth surface through neighbours for an entry.
 struct LeftOut {
@@ -189,7 +174,7 @@ class SmoothSurface {
     }
     found.assign(own.size(), {});
     for (std::size_t e = 0; e < own.size(); ++e) {
-      if (!own[e].is_pure() && samples_[e].count >= kLeastNeighbours)
+      if (!own[e].is_pure() && samples_[e].count >= ErrorCriterion::kLeastNeighbours)
         predict(site, size, own[e], samples_[e], powers, found[e]);
     }
   }
@@ -251,7 +236,7 @@ class SmoothSurface {
       samples.weighted.sum<kDegree / 2>(powers, values);
     });
     const double weights = squares[0][0][0];
-    if (weights < kLeastWeight) return;
+    if (weights < ErrorCriterion::kLeastWeight) return;
     QuadricEquations equations(squares, values);
     equations.solve(1e-9 * weights);
     const double value = equations.coefficient(kConstant), unit = equations.growth_of_constant(),
@@ -286,14 +271,6 @@ class SmoothSurface {
   std::vector<Samples> samples_;  // by entry of the site
 };
 
-/// Returns the noise that the method finds for fractions without errors: the surface through the neighbours'
-/// distances is less exact the narrower the step is, up to the error for a sphere of 16 cells. `width`: the
-/// width of the steps, in cells.
-double error_of_method(double width) {
-  constexpr double kSharp = 0.014, kFrom = 0.58, kFalls = 4.2;
-  return kSharp * std::exp(-kFalls * std::max(0.0, width - kFrom));
-}
-
 /// Returns the mixed sites that are not at a sheet.
 std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const ThinSheets& sheets) {
   std::vector<std::uint32_t> sites;
@@ -309,13 +286,8 @@ std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const Thin
 
 double fraction_noise(const MultiMaterialData& data, const SiteValues& values, const ThinSheets& sheets) {
   const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
-  const std::size_t stride = mixed.size() / kMostCells + 1;
-  struct Sample {
-    double off = -1, curved = 0;
-    std::uint16_t material = 0;
-    bool is_sharp = false;
-  };
-  std::vector<Sample> samples((mixed.size() + stride - 1) / stride);
+  const std::size_t stride = ErrorCriterion::stride(mixed.size());
+  std::vector<ErrorCriterion::Sample> samples((mixed.size() + stride - 1) / stride);
   LoopProgress::begin_part(kEstimateShare, static_cast<double>(samples.size()));
   parallel_chunks(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
     SmoothSurface surface(data, values);
@@ -327,29 +299,16 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
         const Entry& entry = values.at(site)[e];
         const LeftOut& found = predicted[e];
         const auto f = static_cast<double>(entry.fraction);
-        if (f < kLeastClear || f > 1 - kLeastClear) continue;
+        if (f < ErrorCriterion::kLeastClear || f > 1 - ErrorCriterion::kLeastClear) continue;
         if (!found.known || (entry.width == 0 && !found.is_alone)) continue;
         const double off = std::abs(found.fraction - f);
         if (off > samples[n].off) samples[n] = {off, found.curved, entry.material, entry.width == 0};
       }
     }
   });
-  std::erase_if(samples, [](const Sample& sample) { return sample.off < 0; });
-  const double sampled = kLeastPart * static_cast<double>(values.mixed_sites().size() / stride);
-  if (samples.size() < kLeastCells || static_cast<double>(samples.size()) < sampled) return sheets.noise;
-  // Distances from planes in cells are less exact for a curved interface, by the material's median curvature.
-  std::vector<std::vector<double>> curved(values.number_count());
-  for (const Sample& sample : samples) curved[sample.material].push_back(sample.curved);
-  std::vector<double> means(curved.size(), 0), off;
-  for (std::size_t m = 0; m < means.size(); ++m) {
-    if (!curved[m].empty()) means[m] = median(curved[m]);
-  }
-  for (const Sample& sample : samples) {
-    const double mean = means[sample.material];
-    off.push_back(sample.is_sharp ? std::max(0.0, sample.off - kOfCurved * mean * mean) : sample.off);
-  }
-  const double found = kDeviationByMedian * median(off), own = error_of_method(values.findings().blur_median);
-  return found > own ? std::sqrt(found * found - own * own) : 0;
+  return ErrorCriterion::deviation(std::move(samples), values.mixed_sites().size() / stride,
+                                   values.number_count(), values.findings().blur_median)
+      .value_or(sheets.noise);
 }
 
 namespace {
@@ -403,8 +362,7 @@ class Predictions {
       }
     });
     mean /= count;
-    const double kept = std::max(0.0, 1 - kBeyond * noise * noise / std::max(mean, 1e-12)),
-                 part = kept + (1 - kept) * own;
+    const double part = ErrorCriterion::part_kept(mean, noise, own);
     entry.value = value_there + part * (entry.value - value_there);
     const double fraction = fraction_there + part * (static_cast<double>(entry.fraction) - fraction_there);
     entry.fraction = static_cast<float>(std::clamp(fraction, 1e-6, 1 - 1e-6));

@@ -69,6 +69,36 @@ TEST_F(CellSeries, OneTimeIsChosenByItsNumber) {
       << told.out;
 }
 
+/// Some per cent of a spray in all cells far from the water is named with its volume, and drawn where that is
+/// wanted.
+TEST_F(CellSeries, DispersedVolumeIsNamed) {
+  std::vector<double> water(96), spray(96);
+  for (std::size_t c = 0; c < water.size(); ++c) {
+    water[c] = c < 16 ? 1 : 0;
+    spray[c] = c < 16 ? 0 : 0.03 + 0.0002 * static_cast<double>(c);
+  }
+  test::write_foam_field(folder() / "1.5", "alpha.water", water);
+  test::write_foam_field(folder() / "1.5", "alpha.spray", spray);
+  const auto figures = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all = command(
+        "reconstruct", {"--time", "3", "--fraction", "spray=alpha.spray", "-o", "s.vtp", "--json", "s.json"});
+    all.insert(all.end(), options.begin(), options.end());
+    const auto done = run(all);
+    EXPECT_EQ(done.status, 0) << done.err;
+    const nlohmann::json dispersed = read_json("s.json")["fractions"]["dispersed"];
+    EXPECT_EQ(done.err.find("of 'spray' is dispersed") != std::string::npos, !dispersed.empty()) << done.err;
+    return dispersed;
+  };
+  const nlohmann::json found = figures({});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["name"], "spray");
+  EXPECT_GT(found[0]["volume"], 0.02);
+  EXPECT_EQ(figures({"--keep-dispersed"}).size(), 0u);
+  const auto refused = run(command("reconstruct", {"--smooth-labels", "-o", "s.vtp"}));
+  EXPECT_NE(refused.err.find("--smooth-labels: expected labels on a grid as INPUT, found data on a mesh"),
+            std::string::npos);
+}
+
 TEST_F(CellSeries, FieldsAreCutAndIntegrated) {
   const auto cut =
       run(command("slice", {"--plane", "x=0.5", "--field", "p", "--time", "1", "-o", "cut.png"}));

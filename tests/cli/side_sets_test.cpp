@@ -70,6 +70,34 @@ TEST_F(SideSets, AreToldAndWritten) {
     EXPECT_NEAR(area, sets[static_cast<std::size_t>(set)].at("area").get<double>(), 1e-5);
 }
 
+/// The areas that sets of an input have, by name.
+std::map<std::string, double> areas_by_name(const nlohmann::json& figures) {
+  std::map<std::string, double> areas;
+  for (const auto& set : figures.at("sets"))
+    areas[set.at("name").get<std::string>()] = set.at("area").get<double>();
+  return areas;
+}
+
+/// The cut mesh of data with side sets has these as groups of faces, beside the sides of the box and the
+/// interfaces, with the areas that they have in the input.
+TEST_F(SideSets, AreGroupsOfFacesOfTheCutMesh) {
+  EXPECT_EQ(run({"info", "cut.exo", "--json", "info.json"}).status, 0);
+  const auto given = areas_by_name(read_json("info.json"));
+  EXPECT_EQ(run({"resample", "cut.exo", "--interface-error", "1%", "--cut-mesh", "again.exo"}).status, 0);
+  EXPECT_EQ(run({"info", "again.exo", "--json", "info.json"}).status, 0);
+  const auto found = areas_by_name(read_json("info.json"));
+  ASSERT_EQ(found.size(), 2 * given.size());
+  for (const auto& [name, area] : given) {
+    const auto input = found.find(name + " (input)");
+    ASSERT_NE(input, found.end()) << name;
+    EXPECT_NEAR(input->second, found.at(name), 1e-9 * area) << "here each set is a whole group";
+    EXPECT_NEAR(input->second, area, 0.1 * area) << name;
+  }
+  // Gmsh's files have them as physical groups.
+  EXPECT_EQ(run({"resample", "cut.exo", "--interface-error", "10%", "--cut-mesh", "again.msh"}).status, 0);
+  EXPECT_NE(read("again.msh").find("\"x min (input)\""), std::string::npos);
+}
+
 TEST_F(SideSets, AreWantedOfFilesThatHaveThem) {
   expect_wrong_usage({"reconstruct", "scene.vtr", "--side-sets", "sides.vtp"},
                      {"--side-sets: expected an INPUT with side sets or node sets", "scene.vtr"});

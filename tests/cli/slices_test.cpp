@@ -46,6 +46,16 @@ TEST_F(Slices, MaterialsHaveTheColoursOfTheFilesUpToTheMeshAndBack) {
             "--interfaces-out", "i.vtp"});
   run_well({"reconstruct", "parts.seg.nrrd", "--cells", "-o", "r.vtp"});
   for (const std::string file : {"m.vtu", "i.vtp", "r.vtp"}) EXPECT_TRUE(has(slice({file}), bone)) << file;
+  // Cut meshes, saved hierarchies and what is selected from these have them too, and pictures in space.
+  run_well({"resample", "parts.seg.nrrd", "--cells", "--interface-error", "20%", "--cut-mesh", "cut.vtu",
+            "--save", "h.h5", "--picture", "r.svg"});
+  run_well({"select", "h.h5", "-o", "s.vtu", "--cut-mesh", "cut2.vtu", "--picture", "p.svg"});
+  EXPECT_TRUE(has(slice({"s.vtu"}), bone));
+  EXPECT_TRUE(has(slice({"h.h5"}), bone));
+  for (const std::string file : {"cut.vtu", "cut2.vtu"})
+    EXPECT_NE(read(file).find("\"material_colors\""), std::string::npos) << file;
+  EXPECT_EQ(run({"reconstruct", "i.vtp", "--picture", "i.svg"}).status, 0);
+  for (const std::string file : {"r.svg", "p.svg", "i.svg"}) EXPECT_TRUE(has(read(file), bone)) << file;
   // The table has other names, and comes before the file's colours; a label of opacity 0 has none.
   const std::string named =
       slice({"parts.seg.nrrd", "--cells", "--labels", "labels", "--region-names", "table.txt"});

@@ -68,4 +68,24 @@ inline PolyhedralMesh to_mesh(const Hexahedra& hexahedra) {
   return PolyhedralMesh::make("mesh", hexahedra.points, std::move(points), face_ends, cell_ends);
 }
 
+/// The mesh of tetrahedra that has six in each hexahedron, round its diagonal.
+inline PolyhedralMesh to_tetrahedra(const Hexahedra& hexahedra) {
+  constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{
+      {{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}}};
+  std::vector<std::uint32_t> points, face_ends, cell_ends;
+  for (const auto& cell : hexahedra.cells) {
+    for (const auto& [b, c] : kEdges) {
+      const std::array<std::uint32_t, 4> corners{cell[0], cell[b], cell[c], cell[6]};
+      constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
+          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+      for (const auto& face : kFaces) {
+        for (const std::size_t i : face) points.push_back(corners[i]);
+        face_ends.push_back(static_cast<std::uint32_t>(points.size()));
+      }
+      cell_ends.push_back(static_cast<std::uint32_t>(face_ends.size()));
+    }
+  }
+  return PolyhedralMesh::make("mesh", hexahedra.points, std::move(points), face_ends, cell_ends);
+}
+
 }  // namespace adamas::test

@@ -9,10 +9,12 @@
 #include "core/geometry/plane.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "core/picture/material_colours.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
 #include "tests/support/scratch.h"
 #include "tests/viewer/drawn_triangles.h"
+#include "viewer/contents/document.h"
 
 namespace adamas {
 
@@ -70,6 +72,17 @@ InterfaceMesh cube() {
     mesh.triangles.push_back({{a, d, c}, MaterialId(1), MaterialId(0)});
   }
   return mesh;
+}
+
+TEST(NetworkContents, MaterialsHaveTheColoursOfTheFile) {
+  const test::Scratch scratch;
+  const std::string file = (scratch / "ball.vtp").string();
+  write_interface_mesh(file, ball(6), {{"inside", {0.25, 0.5, 0.75}}});
+  const auto document = open_document(file, {}, SilentProgress::instance());
+  const DocumentFacts& facts = document->facts();
+  ASSERT_EQ(facts.materials, (std::vector<std::string>{"outside", "inside"}));
+  EXPECT_EQ(facts.material_colours[0], picture::material_colour(0));
+  EXPECT_EQ(facts.material_colours[1], (picture::Colour{0.25, 0.5, 0.75}));
 }
 
 TEST(NetworkContents, SmoothSurfacesHaveOneNormalAtAPoint) {

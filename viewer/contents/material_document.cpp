@@ -4,6 +4,7 @@
 #include <future>
 #include <utility>
 
+#include "core/io/named_colours.h"
 #include "core/picture/material_colours.h"
 #include "viewer/contents/document.h"
 #include "viewer/contents/material_contents.h"
@@ -42,8 +43,13 @@ class MaterialDocument final : public Document {
     facts_.summary = contents_->summary();
     facts_.box = contents_->box();
     facts_.materials = contents_->materials();
-    for (std::size_t m = 0; m < facts_.materials.size(); ++m)
-      facts_.material_colours.push_back(material_colour(m));
+    const io::NamedColours own = io::find_named_colours(path, {});
+    for (std::size_t m = 0; m < facts_.materials.size(); ++m) {
+      const auto found = own.find(facts_.materials[m]);
+      facts_.material_colours.push_back(found == own.end()
+                                            ? material_colour(m)
+                                            : Colour{found->second[0], found->second[1], found->second[2]});
+    }
     facts_.fields = contents_->fields();
     set_field(std::nullopt);
   }

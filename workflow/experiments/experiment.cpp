@@ -180,7 +180,8 @@ void Experiment::refine() {
   if (std::any_of(targets_.field_errors.begin(), targets_.field_errors.end(), wanted))
     record_.with_fields = run_resampler(input_.source, targets_, progress_, &mesh_);
   write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box,
-                        options_.drawing, picture_block(record_.with_fields ? mesh_ : interface_mesh_));
+                        options_.drawing,
+                        picture_block(record_.with_fields ? mesh_ : interface_mesh_, options_.drawing));
 }
 
 void Experiment::show_meshes() {

@@ -1,11 +1,19 @@
 #include "adamas/material_colours.h"
 
+#include <utility>
+#include <vector>
+
 #include "core/data/interface_mesh.h"
+#include "core/io/array_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/named_colours.h"
+#include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/api/adaptive_mesh.h"
+#include "interfaces/api/cut_mesh.h"
+#include "interfaces/api/select.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/selection/saved_hierarchy_file.h"
 
 namespace adamas {
 
@@ -26,6 +34,18 @@ void write_mesh(const std::filesystem::path& path, const AdaptiveMesh& mesh, con
 void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh,
                 const MaterialColours& colours) {
   write_interface_mesh(path, to_interface_mesh(mesh, path.string()), colours);
+}
+
+void write_mesh(const std::filesystem::path& path, const CutMesh& mesh, const MaterialColours& colours) {
+  write_solver_mesh(path, mesh.contents().mesh, colours);
+}
+
+void write_hierarchy(const std::filesystem::path& path, const MultiresolutionMesh& mesh,
+                     const MaterialColours& colours) {
+  const SavedHierarchy& hierarchy = mesh.contents().hierarchy;
+  std::vector<NamedArray> arrays = to_arrays(hierarchy);
+  add_colours(hierarchy.tree.materials, colours, arrays);
+  write_array_file(path, {kHierarchyFormat, kHierarchyVersion, std::move(arrays)});
 }
 
 }  // namespace adamas

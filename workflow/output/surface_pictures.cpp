@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "adamas/turning_picture.h"
-#include "core/picture/material_colours.h"
 #include "core/picture/picture_api.h"
 #include "core/picture/picture_file.h"
 #include "interfaces/api/adaptive_mesh.h"
@@ -70,7 +69,7 @@ PictureBlock::Field field_of(const FieldInfo& info, const std::vector<PointSampl
 
 bool turns(const std::filesystem::path& path) { return lower_extension(path) == ".html"; }
 
-PictureBlock picture_block(const ResampledMesh& mesh) {
+PictureBlock picture_block(const ResampledMesh& mesh, const DrawingOptions& options) {
   PictureBlock block;
   block.box = mesh.box;
   const Vec3 size = mesh.box.size();
@@ -78,8 +77,9 @@ PictureBlock picture_block(const ResampledMesh& mesh) {
   for (int axis = 0; axis < 3; ++axis)
     block.counts[static_cast<std::size_t>(axis)] =
         std::max<std::size_t>(2, static_cast<std::size_t>(size[axis] / spacing) + 1);
-  for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value)
-    block.materials.push_back({mesh.materials[m], material_colour(m.value)});
+  const std::vector<std::string> names(mesh.materials.begin(), mesh.materials.end());
+  for (std::size_t m = 0; m < names.size(); ++m)
+    block.materials.push_back({names[m], colour_of(options, names, m)});
   const std::vector<PointSample> samples = probe(mesh, points_of(block));
   for (const PointSample& sample : samples)
     block.numbers.push_back(sample.inside() && sample.material < PictureBlock::kNothing
@@ -104,7 +104,7 @@ namespace adamas {
 void write_picture(const std::filesystem::path& path, const InterfaceTriangles& interfaces,
                    const AdaptiveMesh& mesh, const DrawingOptions& options) {
   picture::InterfacePicture drawn = picture::interface_picture(interfaces, options);
-  if (workflow::turns(path)) drawn.block = workflow::picture_block(mesh.contents().mesh());
+  if (workflow::turns(path)) drawn.block = workflow::picture_block(mesh.contents().mesh(), options);
   picture::write_interfaces(drawn, path, picture::surface_drawing(options));
 }
 

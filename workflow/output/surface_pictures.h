@@ -14,8 +14,8 @@ namespace adamas::workflow {
 bool turns(const std::filesystem::path& path);
 
 /// Returns the materials and the fields of a mesh, each material's own, at points of a grid: at most 72 along
-/// its longest side. Vectors are replaced by their lengths.
-picture::PictureBlock picture_block(const interfaces::ResampledMesh& mesh);
+/// its longest side. Vectors are replaced by their lengths. `options`: colours of materials.
+picture::PictureBlock picture_block(const interfaces::ResampledMesh& mesh, const DrawingOptions& options);
 
 /// Draws interfaces in their domain. `block`: the values on the cutting plane of a picture in a browser.
 void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
