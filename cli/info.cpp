@@ -38,11 +38,20 @@ void print_axes(const VolumeGrid& grid, Console& console) {
   if (!grid.space.empty()) console.print("  coordinates are {}\n", grid.space);
 }
 
+/// Prints a line on the units that are known.
+void print_units(const VolumeGrid& grid, Console& console) {
+  std::vector<std::string> units;
+  if (!grid.length_unit.empty()) units.push_back("lengths are in " + grid.length_unit);
+  if (!grid.value_unit.empty()) units.push_back("values are in " + grid.value_unit);
+  if (!units.empty()) console.print("  {}\n", listed(units));
+}
+
 /// Prints a line on the box and the spacing of a volume, and those of print_axes.
 void print_places(const VolumeGrid& grid, Console& console) {
   console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,
                 grid.spacing.y, grid.spacing.z);
   print_axes(grid, console);
+  print_units(grid, console);
 }
 
 /// Adds `directions` (unit vectors of the axes) and `space` (null where it is not known) to figures.
@@ -52,12 +61,20 @@ void add_axes(const VolumeGrid& grid, Figures& figures) {
   figures["space"] = grid.space.empty() ? Figures(nullptr) : Figures(grid.space);
 }
 
+/// Adds `length_unit` and `value_unit`, null where they are not known.
+void add_units(const VolumeGrid& grid, Figures& figures) {
+  const auto unit = [](const std::string& text) { return text.empty() ? Figures(nullptr) : Figures(text); };
+  figures["length_unit"] = unit(grid.length_unit);
+  figures["value_unit"] = unit(grid.value_unit);
+}
+
 /// Adds `box`, `spacing`, `origin` (of the first sample) and the axes to figures.
 void add_places(const VolumeGrid& grid, Figures& figures) {
   figures["box"] = box_figures(grid.box());
   figures["spacing"] = place_figures(grid.spacing);
   figures["origin"] = place_figures(grid.origin);
   add_axes(grid, figures);
+  add_units(grid, figures);
 }
 
 /// Returns a value of an array: whole numbers, such as labels, with all digits.
@@ -83,7 +100,11 @@ void print_grid(const FileSummary& s, Console& console, Figures& figures) {
   places.directions = s.directions;
   places.origin = s.origin;
   places.space = s.space;
+  places.length_unit = s.length_unit;
+  places.value_unit = s.value_unit;
   print_axes(places, console);
+  print_units(places, console);
+  if (s.nodes[0] > 0) add_units(places, figures);
   if (!places.is_straight() || !s.space.empty()) add_axes(places, figures);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "adamas/geometry.h"
+#include "adamas/text.h"
 #include "core/base/error.h"
 
 namespace adamas {
@@ -97,6 +98,12 @@ void VolumeGrid::check(const std::string& name) const {
   if (!(slope > 0) || !std::isfinite(slope) || !std::isfinite(intercept)) {
     fail("{}: expected values of a positive multiple of the samples and a finite number, found {} and {}",
          name, slope, intercept);
+  }
+  for (const std::string& unit : {length_unit, value_unit}) {
+    const bool shown = visible_text(unit) == unit && unit.find('"') == std::string::npos;
+    if (unit.size() > kLongestUnit || !shown)
+      fail("{}: expected units of up to {} bytes that can be printed, found '{}'", name, kLongestUnit,
+           visible_text(unit));
   }
   constexpr double kRoundOff = 1e-6, kFlat = 1e-4;
   for (std::size_t axis = 0; axis < 3; ++axis) {

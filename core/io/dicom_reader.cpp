@@ -592,8 +592,8 @@ std::vector<SeriesSummary> list_dicom_series(const std::filesystem::path& path) 
   const std::map<std::string, Series> all = series_in(path, others);
   std::vector<SeriesSummary> result;
   for (const auto& [uid, own] : all) {
-    const auto same =
-        std::ranges::count_if(all, [&own](const auto& one) { return one.second.text == own.text; });
+    std::size_t same = 0;
+    for (const auto& other : all) same += other.second.text == own.text ? 1 : 0;
     result.push_back({own.text.empty() || same > 1 ? uid : own.text, uid, own.kind, own.files.size()});
   }
   return result;

@@ -92,6 +92,8 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   }
   if (summary.points > 0) set_grid_box(file, summary);
   summary.space = file.space;
+  summary.length_unit = file.length_unit;
+  summary.value_unit = file.value_unit;
   summary.remark = file.remark;
   add_arrays(std::move(file.arrays), summary);
   return summary;

@@ -92,8 +92,9 @@ struct GridFile {
 
   /// The axes of a grid that are not parallel to x, y and z; `nodes` are then positions along these axes.
   std::optional<GridAxes> aslant;
-  std::string space;   ///< the space of coordinates, as in VolumeGrid; usually empty
-  std::string remark;  ///< what else the file holds and is not read; usually empty
+  std::string space;                    ///< the space of coordinates, as in VolumeGrid; usually empty
+  std::string length_unit, value_unit;  ///< units, as in VolumeGrid; usually empty
+  std::string remark;                   ///< what else the file holds and is not read; usually empty
 
   [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 

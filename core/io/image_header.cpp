@@ -192,6 +192,8 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
   source.grid.dimensions = header.dimensions;
   source.grid.spacing = header.spacing;
   source.grid.space = header.space;
+  source.grid.length_unit = header.length_unit;
+  source.grid.value_unit = header.value_unit;
   source.grid.check(source.name);
   require_found(header, chosen);
   if (source.components != 1)
@@ -216,6 +218,8 @@ GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path, c
   GridFile file;
   file.kind = header.kind;
   file.space = header.space;
+  file.length_unit = header.length_unit;
+  file.value_unit = header.value_unit;
   for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
     for (const ImageArray& array : header.arrays) {
       if (array.centering != centering) continue;

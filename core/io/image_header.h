@@ -51,6 +51,7 @@ struct ImageHeader {
   std::array<std::vector<double>, 3> nodes;
   Vec3 spacing{1, 1, 1};  ///< length of steps by the header; 1 if the directions of `axes` include it
   std::string space;      ///< the space of coordinates, as in VolumeGrid
+  std::string length_unit, value_unit;  ///< units of coordinates and of values, as in VolumeGrid
   /// The centering of samples, which may be values at points or of the cells round them; empty if the arrays
   /// state it.
   std::optional<std::array<SampleCentering, 3>> centers;

@@ -38,6 +38,14 @@ const Datatype* find_datatype(int code) {
   return found == std::end(kDatatypes) ? nullptr : found;
 }
 
+/// The units of length, by their codes, which are in the lowest three bits of a header's.
+struct LengthUnit {
+  int code;
+  std::string_view name;
+};
+constexpr LengthUnit kLengthUnits[] = {{1, "m"}, {2, "mm"}, {3, "um"}};
+constexpr int kLengthBits = 7;
+
 /// The places of the fields in a version's header, and the types of their numbers.
 struct Version1 {
   static constexpr std::size_t kBytes = 348, kMagic = 344;
@@ -147,9 +155,12 @@ std::string header_bytes(const VolumeGrid& grid, StoredType type) {
   put(V::kOffset, static_cast<typename V::Offset>(bytes.size()));
   put(V::kSlope, static_cast<Real>(grid.slope));
   put(V::kIntercept, static_cast<Real>(grid.intercept));
-  // Coordinates are those of the scanner, in millimetres, or those of an unknown space, in unknown units.
+  // Coordinates are those of the scanner, in millimetres unless they have a unit, or those of an unknown
+  // space.
   const bool known = grid.space == "RAS";
-  put(V::kUnits, static_cast<typename V::Units>(known ? 2 : 0));
+  const std::string_view own = grid.length_unit, wanted = known && own.empty() ? std::string_view("mm") : own;
+  const auto unit = std::ranges::find(kLengthUnits, wanted, &LengthUnit::name);
+  put(V::kUnits, static_cast<typename V::Units>(unit == std::end(kLengthUnits) ? 0 : unit->code));
   put(V::kScode, static_cast<typename V::Code>(known ? 1 : 2));
   for (int row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 4; ++column) {
@@ -206,6 +217,10 @@ std::optional<StoredType> NiftiHeader::type() const {
 std::size_t NiftiHeader::components() const {
   const Datatype* found = find_datatype(datatype);
   return found == nullptr ? 1 : found->components;
+}
+
+bool nifti_tells(const std::string& length_unit) {
+  return std::ranges::find(kLengthUnits, length_unit, &LengthUnit::name) != std::end(kLengthUnits);
 }
 
 std::string read_nifti_header(const std::filesystem::path& path) {
@@ -339,6 +354,8 @@ class Parser {
 
   void set_places() {
     for (int axis = 0; axis < 3; ++axis) image_.spacing[axis] = header_.spacing(axis);
+    const auto unit = std::ranges::find(kLengthUnits, header_.units & kLengthBits, &LengthUnit::code);
+    if (unit != std::end(kLengthUnits)) image_.length_unit = unit->name;
     if (const auto stated = header_.axes()) {
       image_.space = "RAS";
       image_.axes = *stated;

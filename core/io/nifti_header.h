@@ -57,6 +57,9 @@ std::string read_nifti_header(const std::filesystem::path& path);
 /// files are not checked. The samples of a pair lie in the .img file beside it.
 ImageHeader nifti_image(std::string_view text, const std::filesystem::path& path);
 
+/// Whether a header can tell a unit of length.
+bool nifti_tells(const std::string& length_unit);
+
 /// The bytes before the samples in a file that holds both: NIfTI-1, or NIfTI-2 if there are more than 32767
 /// samples along an axis. Positions are in RAS if the space of the grid is known; `grid.space` has to be RAS
 /// or one that cannot be converted to it.

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/text.h"
+#include "adamas/volume.h"
 #include "core/base/error.h"
 #include "core/data/anatomical_space.h"
 #include "core/io/header_text.h"
@@ -353,11 +355,39 @@ class Parser {
       places_.kinds = split(value, kBlanks);
     } else if (field == "space") {
       header_.space = space_of_nrrd(value);
+    } else if (field == "space units" || field == "units") {
+      read_units(value);
+    } else if (field == "sample units" || field == "sampleunits") {
+      header_.value_unit = unit_of(value);
     } else if (field == "space origin") {
       places_.origin = split(value, " \t(),");
     } else if (field == "space directions") {
       read_directions(value);
     }
+  }
+
+  /// A unit as VolumeGrid may have it; empty for others.
+  static std::string unit_of(std::string_view text) {
+    const std::string unit = visible_text(trimmed(text, kBlanks));
+    const bool kept = unit.size() <= VolumeGrid::kLongestUnit && unit.find('"') == std::string::npos;
+    return kept ? unit : std::string();
+  }
+
+  /// Reads the units of axes, each in quotes; axes that are none of space have none, or a mark of it. Axes of
+  /// different units have no unit in common.
+  void read_units(std::string_view value) {
+    std::string common;
+    bool same = true;
+    for (std::size_t at = value.find('"'); at != std::string_view::npos; at = value.find('"', at)) {
+      const std::size_t end = value.find('"', at + 1);
+      if (end == std::string_view::npos) return;
+      const std::string unit = unit_of(value.substr(at + 1, end - at - 1));
+      at = end + 1;
+      if (unit.empty() || unit == "???" || unit == "none") continue;
+      same = same && (common.empty() || common == unit);
+      common = unit;
+    }
+    header_.length_unit = same ? common : "";
   }
 
   void read_centers(std::string_view value) {
@@ -449,6 +479,8 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   for (std::size_t axis = 0; axis < 3; ++axis) image.dimensions[axis] = header.sizes[axis];
   image.axes = header.axes;
   image.space = header.space;
+  image.length_unit = header.length_unit;
+  image.value_unit = header.value_unit;
   image.centers = header.centers;
   VolumeSource source;
   source.name = image.name;

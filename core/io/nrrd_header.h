@@ -25,7 +25,8 @@ struct NrrdHeader {
   bool planar = false;  ///< whether the axis of components is the last
   GridAxes axes;        ///< a step along each axis, and the position of the first sample
   std::array<SampleCentering, 3> centers;
-  std::string space;  ///< the space of coordinates, as in VolumeGrid
+  std::string space;                    ///< the space of coordinates, as in VolumeGrid
+  std::string length_unit, value_unit;  ///< as in VolumeGrid
   SamplePacking encoding = SamplePacking::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header

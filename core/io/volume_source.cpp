@@ -13,9 +13,9 @@ void VolumeSource::set_stored(StoredType type) {
 }
 
 void VolumeSource::keep_scale() {
-  const SampleType type = sample_type_for(stored);
-  if (!scaled() || !(slope > 0) || stored_bytes(stored) > 2 || type == SampleType::kFloat32) return;
-  grid.type = type;
+  const bool whole = stored != StoredType::kFloat32 && stored != StoredType::kFloat64;
+  if (!scaled() || !(slope > 0) || !whole) return;
+  grid.type = sample_type_for(stored);
   grid.slope = std::exchange(slope, 1);
   grid.intercept = std::exchange(intercept, 0);
 }

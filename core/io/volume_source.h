@@ -64,8 +64,8 @@ struct VolumeSource {
   [[nodiscard]] bool packed() const { return coding != SamplePacking::kRaw || base64 || !more_files.empty(); }
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   void set_stored(StoredType type);
-  /// Makes the numbers themselves the samples and leaves the scale to the grid, if numbers are whole, their
-  /// type is one of samples, and the slope is positive.
+  /// Makes the numbers themselves the samples, or floats of them where there is no such type of samples, and
+  /// leaves the scale to the grid, if numbers are whole and the slope is positive.
   void keep_scale();
   /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error if a step has no
   /// length or the axes lie in one plane.

@@ -66,6 +66,15 @@ std::string anatomical_orientation(const VolumeGrid& grid) {
   return text;
 }
 
+/// The lines of a NRRD file that tell units.
+std::string nrrd_units(const VolumeGrid& grid) {
+  std::string lines;
+  if (!grid.length_unit.empty())
+    lines += fmt::format("space units: \"{0}\" \"{0}\" \"{0}\"\n", grid.length_unit);
+  if (!grid.value_unit.empty()) lines += fmt::format("sample units: {}\n", grid.value_unit);
+  return lines;
+}
+
 /// The header of a NRRD file. `data_name`: the file of the samples, empty if they follow.
 std::string nrrd_header_text(const VolumeGrid& grid, StoredType type, const std::string& data_name) {
   const std::string name = type == StoredType::kFloat32   ? "float"
@@ -74,10 +83,10 @@ std::string nrrd_header_text(const VolumeGrid& grid, StoredType type, const std:
   const std::string space = nrrd_space(grid.space);
   return fmt::format(
       "NRRD0004\ntype: {}\ndimension: 3\n{}sizes: {}\nspace directions: ({}) ({}) ({})\n"
-      "kinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: ({})\n{}\n",
+      "kinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: ({})\n{}{}\n",
       name, space.empty() ? "space dimension: 3\n" : "space: " + space + "\n", sizes(grid),
       numbers(step(grid, 0), ","), numbers(step(grid, 1), ","), numbers(step(grid, 2), ","),
-      numbers(grid.origin, ","), data_name.empty() ? "" : "data file: " + data_name + "\n");
+      numbers(grid.origin, ","), nrrd_units(grid), data_name.empty() ? "" : "data file: " + data_name + "\n");
 }
 
 /// The header of a MetaImage file. `data_name`: the file of the samples, empty if they follow.
@@ -174,21 +183,44 @@ std::filesystem::path volume_data_file(const std::filesystem::path& path) {
   return std::filesystem::path(path).replace_extension(".raw");
 }
 
-std::string lost_places(const std::filesystem::path& path, const VolumeGrid& grid) {
-  const std::string extension = file_extension(path);
+namespace {
+
+/// What a format cannot tell of the units; empty where it tells them. MetaImages are in millimetres.
+std::string lost_units(const std::string& extension, const VolumeGrid& grid) {
+  if (extension == ".nrrd" || extension == ".nhdr") return {};
+  const std::string& unit = grid.length_unit;
+  const bool tells =
+      is_nifti(extension) ? nifti_tells(unit) : (extension == ".mha" || extension == ".mhd") && unit == "mm";
+  std::vector<std::string> lost;
+  if (!unit.empty() && !tells) lost.push_back(fmt::format("of length, {},", unit));
+  if (!grid.value_unit.empty()) lost.push_back(fmt::format("of values, {},", grid.value_unit));
+  return lost.empty() ? "" : fmt::format("the unit {} is not kept", fmt::join(lost, " and that "));
+}
+
+/// What a format cannot tell of the places; empty where it tells them.
+std::string lost_axes(const std::string& extension, const VolumeGrid& grid) {
   const bool anatomical = grid.space == "RAS" || grid.space == "LAS" || grid.space == "LPS";
-  if (extension == ".raw") {
-    if (grid.is_straight() && grid.space.empty()) return {};
-    return path.string() + ": axes, origin and space of the volume are not kept";
-  }
+  if (extension == ".raw")
+    return grid.is_straight() && grid.space.empty() ? ""
+                                                    : "axes, origin and space of the volume are not kept";
   if (is_nifti(extension)) {
     if (anatomical || (grid.is_straight() && grid.space.empty())) return {};
-    return fmt::format("{}: the space of coordinates is {}: NIfTI takes them for RAS", path.string(),
+    return fmt::format("the space of coordinates is {}: NIfTI takes them for RAS",
                        grid.space.empty() ? "not known" : grid.space);
   }
   if (grid.space.empty() || extension == ".nrrd" || extension == ".nhdr") return {};
   if (anatomical && extension != ".vti" && extension != ".pvd") return {};
-  return fmt::format("{}: coordinates are {}, which the file does not say", path.string(), grid.space);
+  return fmt::format("coordinates are {}, which the file does not say", grid.space);
+}
+
+}  // namespace
+
+std::string lost_places(const std::filesystem::path& path, const VolumeGrid& grid) {
+  const std::string extension = file_extension(path);
+  std::string lost = lost_axes(extension, grid);
+  if (const std::string units = lost_units(extension, grid); !units.empty())
+    lost += (lost.empty() ? "" : "; ") + units;
+  return lost.empty() ? "" : path.string() + ": " + lost;
 }
 
 bool keeps_scale(const std::filesystem::path& path) { return is_nifti(file_extension(path)); }

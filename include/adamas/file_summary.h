@@ -48,8 +48,9 @@ struct FileSummary {
   /// and `origin` is the place of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
-  std::string space;   ///< the name of the coordinate space, as VolumeGrid::space; mostly empty
-  std::string remark;  ///< what else the file holds and is not read; mostly empty
+  std::string space;  ///< the name of the coordinate space, as VolumeGrid::space; mostly empty
+  std::string length_unit, value_unit;  ///< units, as those of VolumeGrid; mostly empty
+  std::string remark;                   ///< what else the file holds and is not read; mostly empty
   std::vector<ArraySummary> arrays;
   std::vector<SetSummary> sets;  ///< side sets, then node sets
   bool flat = false;             ///< whether it is a mesh of two dimensions

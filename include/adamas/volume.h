@@ -55,6 +55,7 @@ std::optional<StoredType> parse_stored_type(std::string_view name);
 /// Describes a volume without its samples: a regular grid of samples, i running fastest.
 struct VolumeGrid {
   static constexpr std::array<Vec3, 3> kStraight{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  static constexpr std::size_t kLongestUnit = 64;
 
   std::array<std::uint64_t, 3> dimensions{};  ///< samples per axis
   SampleType type = SampleType::kUint8;
@@ -65,6 +66,9 @@ struct VolumeGrid {
   /// The coordinate space: "RAS", "LAS", "LPS" (the directions in which x, y and z ascend: right or left,
   /// anterior or posterior, superior), or another name of NRRD; empty where it is not known.
   std::string space{};
+  /// The units of coordinates ("mm") and of values ("HU"), of up to kLongestUnit bytes; empty where they are
+  /// not known.
+  std::string length_unit{}, value_unit{};
   /// Samples stand for values, slope * sample + intercept: isovalues and ranges are values. The slope is
   /// positive.
   double slope = 1, intercept = 0;
@@ -105,7 +109,8 @@ struct VolumeGrid {
 
   /// Checks the grid. Throws Error with `name` where there is no sample, the samples take more bytes than can
   /// be counted (at eight bytes each), a spacing or the slope is not positive, a place or the intercept is
-  /// not finite, or directions are no unit vectors or lie in one plane.
+  /// not finite, directions are no unit vectors or lie in one plane, or units are too long, cannot be printed
+  /// or contain a quotation mark.
   void check(const std::string& name) const;
 
   bool operator==(const VolumeGrid&) const = default;

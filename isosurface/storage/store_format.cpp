@@ -32,7 +32,8 @@ void write_grid(ByteWriter& out, const VolumeGrid& grid) {
   for (const Vec3& direction : grid.directions) {
     for (int axis = 0; axis < 3; ++axis) out.number(direction[axis]);
   }
-  out.sized_bytes(std::as_bytes(std::span(grid.space)));
+  for (const std::string* text : {&grid.space, &grid.length_unit, &grid.value_unit})
+    out.sized_bytes(std::as_bytes(std::span(*text)));
   out.number(grid.slope);
   out.number(grid.intercept);
 }
@@ -49,8 +50,10 @@ VolumeGrid read_grid(ByteReader& in, std::string_view name) {
   for (Vec3& direction : grid.directions) {
     for (int axis = 0; axis < 3; ++axis) direction[axis] = in.number<double>();
   }
-  const auto space = in.sized_bytes();
-  grid.space.assign(reinterpret_cast<const char*>(space.data()), space.size());
+  for (std::string* text : {&grid.space, &grid.length_unit, &grid.value_unit}) {
+    const auto bytes = in.sized_bytes();
+    text->assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
   if (!grid.space.empty() && !is_space(grid.space))
     fail("{}: expected the name of a space of coordinates, found another", name);
   grid.slope = in.number<double>();

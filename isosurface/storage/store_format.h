@@ -164,7 +164,7 @@ inline constexpr std::array<std::uint8_t, 8> kBlockMark{0xad, 'b', 'l', 'o', 'c'
 /// The first bytes of a file, from which everything else is found.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
-  static constexpr std::uint32_t kVersion = 6;
+  static constexpr std::uint32_t kVersion = 7;
 
   RootPlace root;  ///< the root of the last block
 

@@ -26,13 +26,14 @@ class Store:
     def __init__(self, data):
         self.data = data
         prologue = Bytes(data)
-        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 6
+        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 7
         root_offset, root_size = prologue.number("Q"), prologue.number("Q")
         root = Bytes(data[root_offset:root_offset + root_size])
         self.bytes = (1, 2, 2, 4)[root.number("B")]
         self.size = [root.number("Q") for _ in range(3)]
         root.take(8 * 15)
-        root.sized()
+        for _ in range(3):  # space and units
+            root.sized()
         root.take(2 * 8)
         self.numbers = FORMS[root.number("B")]
         self.array = root.sized().decode()

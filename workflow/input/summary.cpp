@@ -184,6 +184,8 @@ std::optional<VolumeSummary> summarize_volume(const VolumeInput& volume, bool gr
   file.directions = grid.directions;
   file.origin = grid.origin;
   file.space = grid.space;
+  file.length_unit = grid.length_unit;
+  file.value_unit = grid.value_unit;
   file.arrays.push_back({volume.array.empty() ? file_stem(volume.path) : volume.array,
                          stored_name(reader.source().stored), "points", 1, 0, 0});
   set_range(reader, file.arrays.front(), progress);

@@ -1,9 +1,11 @@
 #include "workflow/stores/ome_zarr.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "adamas/file_names.h"
 #include "adamas/files.h"
@@ -71,10 +73,27 @@ Json transformations(const RestoredPart& part, const VolumeGrid& volume,
   return {{{"type", "scale"}, {"scale", scale}}, {{"type", "translation"}, {"translation", translation}}};
 }
 
-Json axes(bool is_series) {
+/// The word that NGFF has for a unit of length; empty where it has none.
+std::string ngff_unit(const std::string& unit) {
+  constexpr std::array<std::pair<const char*, const char*>, 6> kWords{{{"m", "meter"},
+                                                                       {"cm", "centimeter"},
+                                                                       {"mm", "millimeter"},
+                                                                       {"um", "micrometer"},
+                                                                       {"nm", "nanometer"},
+                                                                       {"km", "kilometer"}}};
+  for (const auto& [name, word] : kWords) {
+    if (unit == name || unit == word) return word;
+  }
+  return {};
+}
+
+Json axes(bool is_series, const std::string& length_unit) {
   Json all = Json::array();
   if (is_series) all.push_back({{"name", "t"}, {"type", "time"}});
-  for (const char* name : {"z", "y", "x"}) all.push_back({{"name", name}, {"type", "space"}});
+  for (const char* name : {"z", "y", "x"}) {
+    all.push_back({{"name", name}, {"type", "space"}});
+    if (const std::string unit = ngff_unit(length_unit); !unit.empty()) all.back()["unit"] = unit;
+  }
   return all;
 }
 
@@ -85,6 +104,8 @@ Json own_attributes(const VolumeGrid& volume, const std::vector<double>& times) 
     directions.push_back({direction.x, direction.y, direction.z});
   Json own{{"directions", directions}};
   if (!volume.space.empty()) own["space"] = volume.space;
+  if (!volume.length_unit.empty()) own["length_unit"] = volume.length_unit;
+  if (!volume.value_unit.empty()) own["value_unit"] = volume.value_unit;
   if (!times.empty()) own["times"] = times;
   return own;
 }
@@ -120,7 +141,7 @@ void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content
                         {"coordinateTransformations", transformations(content.levels[n], volume, time)}});
   const Json multiscale{{"version", "0.4"},
                         {"name", zarr_name(folder_->path())},
-                        {"axes", axes(content.is_series)},
+                        {"axes", axes(content.is_series, volume.length_unit)},
                         {"datasets", datasets},
                         {"type", "nearest"}};
   write_json(folder_->file(".zgroup"), Json::object({{"zarr_format", 2}}));

@@ -39,6 +39,8 @@ void refuse_grid(const std::string& name, const VolumeGrid& found, const std::st
     return fmt::format("{} times the sample plus {}", grid.slope, grid.intercept);
   };
   refuse("scale", scale(found), scale(wanted));
+  refuse("unit of lengths", '\'' + found.length_unit + '\'', '\'' + wanted.length_unit + '\'');
+  refuse("unit of values", '\'' + found.value_unit + '\'', '\'' + wanted.value_unit + '\'');
   fail("{}: expected coordinates in the space of {}, '{}', found '{}'", name, first, wanted.space,
        found.space);
 }
