@@ -30,8 +30,9 @@ inline constexpr auto kSentMembers<MeshFile> =
                &MeshFile::remark,    &MeshFile::flat,   &MeshFile::block_of_cell, &MeshFile::sets,
                &MeshFile::times};
 
+/// Hidden, since the library shows what is made of types that it declares.
 template <>
-inline constexpr auto kSentMembers<SeriesSummary> =
+[[gnu::visibility("hidden")]] inline constexpr auto kSentMembers<SeriesSummary> =
     std::tuple{&SeriesSummary::name, &SeriesSummary::uid, &SeriesSummary::kind, &SeriesSummary::files};
 
 /// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold

@@ -331,7 +331,8 @@ std::optional<RefinementEnd> BodyMending::split_cells(ShownBodies& best) {
   if (!best.given_away) best.given_away = torn.places;
   std::optional<RefinementEnd> end = RefinementEnd::kSmallestCells;
   while (!torn.leaves.empty()) {
-    const std::size_t more = kMoreLeaves * torn.leaves.size(), foretold = state_.hierarchy.leaf_count() + more;
+    const std::size_t more = kMoreLeaves * torn.leaves.size(),
+                      foretold = state_.hierarchy.leaf_count() + more;
     if (foretold > best.most_leaves() && foretold > kMostForetold) return RefinementEnd::kSmallestCells;
     std::vector<TetrahedronId> created = refinement_.split_failing(std::move(torn.leaves));
     if (created.empty())

@@ -92,8 +92,8 @@ class BodyMending {
   /// Extracts the interfaces that the leaves show now and compares their bodies, but measures no distances;
   /// returns those before.
   Shown extract_and_measure();
-  /// Returns to interfaces that were shown before, after the leaves were made to show them again, and to their
-  /// distances, if these were measured.
+  /// Returns to interfaces that were shown before, after the leaves were made to show them again, and to
+  /// their distances, if these were measured.
   void go_back(Shown shown, std::optional<InterfaceComparison> distances = {});
   [[nodiscard]] const BodyReport& report() const { return bodies_.report(); }
   /// Returns the faults of the bodies that were compared last.

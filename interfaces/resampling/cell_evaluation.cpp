@@ -119,7 +119,7 @@ void evaluate_interface(ResamplingState& state, TetrahedronId t, bool may_be_par
   thread_local ShownContacts shown;
   if (may_be_partial && holds_crowd(*state.source.network, cell.triangles)) {
     const double diameter = state.frame(t).diameter();
-    if (diameter > state.options.interface_error) {
+    if (diameter > state.estimate_target()) {
       cell.interface = {diameter, true, true};
       cell.evaluated = true;
       return;
@@ -128,7 +128,7 @@ void evaluate_interface(ResamplingState& state, TetrahedronId t, bool may_be_par
   const std::vector<InterfaceId> interfaces = interfaces_of(*state.source.network, cell.triangles);
   state.ownership(t, owners, {.interfaces = interfaces});
   shown.polygons.clear();
-  const InterfaceErrorOptions options{state.options.interface_error, cell.trusted, may_be_partial};
+  const InterfaceErrorOptions options{state.estimate_target(), cell.trusted, may_be_partial};
   cell.interface = estimate_interface_error(*state.source.network, state.frame(t), owners, cell.triangles,
                                             options, &shown);
   cell.evaluated = true;
@@ -142,7 +142,7 @@ void evaluate_interface(ResamplingState& state, TetrahedronId t) {
 }
 
 bool parts_may_wait(const ResamplingState& state, const InterfaceError& error) {
-  return estimates_may_end_early(state) && error.distance <= state.options.interface_error;
+  return estimates_may_end_early(state) && error.distance <= state.estimate_target();
 }
 
 void complete_estimates(ResamplingState& state) {

@@ -31,10 +31,7 @@ Refinement::Priority Refinement::priority(TetrahedronId t) const {
   // distances to vertices there would be lost in smaller cells too.
   const bool too_small = state_.options.distance == DistanceMode::kNearestVertex &&
                          state_.frame(t).diameter() <= state_.options.interface_error;
-  // Most estimates are above the distance that is measured later, which accounts for every point. Estimates
-  // up to 1.2 times the error would make meshes a tenth smaller, but leave nothing for moves that mend bodies
-  // and conserve volumes.
-  const double ratio = cell.interface.distance / state_.options.interface_error;
+  const double ratio = cell.interface.distance / state_.estimate_target();
   if (ratio > 1 && !too_small) return {cell.interface.lost ? 2 : 1, ratio};
   Priority result;
   for (std::size_t f = 0; f < cell.fields.size(); ++f) {
@@ -212,7 +209,7 @@ void Refinement::undo_splits(const SplitRecord& record) {
 double Refinement::diameter_of(const std::vector<TetrahedronId>& failing) const {
   double sum = 0;
   for (const TetrahedronId t : failing) sum += state_.frame(t).diameter();
-  return sum / (static_cast<double>(failing.size()) * state_.options.interface_error);
+  return sum / (static_cast<double>(failing.size()) * state_.estimate_target());
 }
 
 /// Reports the part of the refinement that is done, where it is foretold. With a budget, that is the part of

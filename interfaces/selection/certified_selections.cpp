@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "interfaces/resampling/resampling_state.h"
 #include "interfaces/selection/selection.h"
 
 namespace adamas::interfaces {
@@ -71,7 +72,7 @@ class Certifier {
   /// `in_small_steps`, returns none if the mesh would grow too much for one step.
   std::optional<InterfaceMesh> split_to(double target, bool in_small_steps) {
     for (int round = 0;; ++round) {
-      split_for_estimates(target);
+      split_for_estimates(kEstimatePart * target);
       selection_.choose(split_);
       const double most = kGrowth * static_cast<double>(certified_size_);
       if (in_small_steps && static_cast<double>(selection_.size()) > most) return std::nullopt;
