@@ -185,12 +185,14 @@ std::filesystem::path volume_data_file(const std::filesystem::path& path) {
 
 namespace {
 
-/// What a format cannot tell of the units; empty where it tells them. MetaImages are in millimetres.
+/// What a format cannot tell of the units; empty where it tells them. MetaImages are in millimetres, and raw
+/// samples have no lengths.
 std::string lost_units(const std::string& extension, const VolumeGrid& grid) {
   if (extension == ".nrrd" || extension == ".nhdr") return {};
   const std::string& unit = grid.length_unit;
+  const bool is_meta_image = extension == ".mha" || extension == ".mhd";
   const bool tells =
-      is_nifti(extension) ? nifti_tells(unit) : (extension == ".mha" || extension == ".mhd") && unit == "mm";
+      extension == ".raw" || (is_meta_image && unit == "mm") || (is_nifti(extension) && nifti_tells(unit));
   std::vector<std::string> lost;
   if (!unit.empty() && !tells) lost.push_back(fmt::format("of length, {},", unit));
   if (!grid.value_unit.empty()) lost.push_back(fmt::format("of values, {},", grid.value_unit));
