@@ -34,8 +34,6 @@ constexpr double kEnough = 2e-4;
 constexpr double kSlow = 0.97;
 /// Blurred fractions are corrected in so many rounds: more would fit noise.
 constexpr int kRoundsBlurred = 3;
-/// The variance of places in a cube along any direction, in relation to its side.
-constexpr double kCellVariance = 1.0 / 12;
 /// A value moves by at most this part of a cell's size in a round.
 constexpr double kMostMove = 0.2;
 /// A material's derivative in a cell is taken to be at least this, in cells per their size.

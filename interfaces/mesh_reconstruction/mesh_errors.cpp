@@ -19,8 +19,6 @@ using Entry = MeshValues::Entry;
 using Quadric = Eigen::Matrix<double, 10, 1>;
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-/// The variance of places in a cube along any direction, in relation to its side.
-constexpr double kCellVariance = 1.0 / 12;
 /// Differences count together with those of cells up to this squared distance, in cells.
 constexpr double kSquaredNear = 3;
 

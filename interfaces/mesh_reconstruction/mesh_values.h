@@ -13,6 +13,9 @@
 
 namespace adamas::interfaces {
 
+/// The variance of places in a cube along any direction, in relation to the square of its side.
+inline constexpr double kCellVariance = 1.0 / 12;
+
 /// The values of materials at the centres of cells, sparse: each cell has entries for the materials that it
 /// or a cell near it holds. A point of the subdivision belongs to the material with the greatest value there;
 /// of equal ones, to the one whose name comes first.

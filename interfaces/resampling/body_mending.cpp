@@ -58,8 +58,6 @@ constexpr double kMostMoved = 0.5;
 /// The height to which a body is raised above the others at the middle of a thin place, relative to its
 /// thickness, so that it also owns the space between such places.
 constexpr double kMargin = 0.25;
-/// Moves must leave at most one fault out of this many.
-constexpr std::size_t kLeastPart = 2;
 /// A mesh whose distance from the input exceeds this, relative to the wanted interface error, is not mended
 /// by moves.
 constexpr double kFarOff = 2;
@@ -478,9 +476,7 @@ bool BodyMending::move_interfaces(std::size_t part) {
   // Such moves cannot mend a mesh that may not grow and is much farther away.
   const bool far_off =
       state_.budget_spent && shown_.comparison().greatest() > kFarOff * state_.options.interface_error;
-  const std::size_t leaves = state_.hierarchy.leaf_count();
-  if (before.torn == 0 || moved_otherwise || far_off) return false;
-  if (moving_is_hopeless_ || leaves == not_mended_) return false;
+  if (before.torn == 0 || moved_otherwise || far_off || moving_is_hopeless_) return false;
   const bool within = shown_.comparison().within();
   const std::size_t off = volumes_.bodies_off();
   find_places();
@@ -493,7 +489,7 @@ bool BodyMending::move_interfaces(std::size_t part) {
   BodyFaults now = faults();
   moving_is_hopeless_ = now.torn >= before.torn || now.lost_or_joined > before.lost_or_joined;
   std::optional<InterfaceComparison> unmoved_distances;
-  if (!moving_is_hopeless_ && kLeastPart * now.torn <= before.torn) {
+  if (!moving_is_hopeless_ && 2 * now.torn <= before.torn) {
     unmoved_distances = shown_.comparison();
     shown_.measure_extracted(true);
     for (int i = 1; within && !shown_.comparison().within() && i <= kMostReturns; ++i) {
@@ -509,8 +505,6 @@ bool BodyMending::move_interfaces(std::size_t part) {
         (shown_.comparison().within() || !within) && volumes_.bodies_off() <= off)
       return true;
   }
-  // Another call for the same mesh may be content with more faults, but not with this many.
-  if ((within && !shown_.comparison().within()) || kLeastPart * now.torn > before.torn) not_mended_ = leaves;
   restore(originals);
   state_.forget_contacts(moved);
   state_.restore_contacts(std::move(shown_by_leaves));

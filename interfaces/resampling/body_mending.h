@@ -154,7 +154,6 @@ class BodyMending {
   std::optional<ThinPlaces> places_;  ///< of the bodies that were wrong when places were needed
   IdVector<BodyId, char> sought_;     ///< marks these bodies
   bool moving_is_hopeless_ = false;   ///< whether moving has not made bodies better
-  std::size_t not_mended_ = 0;        ///< the number of leaves of a mesh that moves have not mended
   std::size_t measured_ = 0;          ///< the number of the interfaces whose bodies are compared
 };
 
