@@ -133,20 +133,18 @@ std::size_t ClosestPointTree::memory_bytes() const {
          h.triangles.capacity() * sizeof(Triangle) + h.order.capacity() * sizeof(std::uint32_t);
 }
 
-std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_distance) const {
-  if (empty() || !(max_distance >= 0)) return std::nullopt;
+template <class Visit>
+void ClosestPointTree::visit_near(const Vec3& q, double squared_distance, Visit&& visit) const {
   const TriangleHierarchy& h = *hierarchy_;
   const Vec3 local = h.to_local(q);
-  if (!is_finite(local)) return std::nullopt;
+  if (!is_finite(local)) return;
   Lanes::Numbers low[3], high[3];
   for (int axis = 0; axis < 3; ++axis) {
     low[axis] = Lanes::Numbers{} + round_down(local[axis]);
     high[axis] = Lanes::Numbers{} - round_down(-local[axis]);
   }
 
-  ClosestPoint best;
-  best.squared_distance = max_distance * max_distance;
-  float bound = box_bound(best.squared_distance, h.scale);
+  float bound = box_bound(squared_distance, h.scale);
   struct Entry {
     float squared_distance;
     Child child;
@@ -173,24 +171,55 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
     } else {
       prefetch_leaf(h, entry.child);
       for (std::uint32_t i = entry.child.first; i < entry.child.first + entry.child.count; ++i) {
-        const std::uint32_t t = h.triangle_at(i);
-        const std::array<Vec3, 3> corners = h.corners(t);
-        const TrianglePoint p =
-            h.is_sliver_at(i) ? detail::closest_on_sliver(q, corners) : detail::closest_on_proper(q, corners);
-        if (p.squared_distance > best.squared_distance) continue;
-        if (p.squared_distance == best.squared_distance && t > best.triangle) continue;
-        best = {p.point, p.squared_distance, t, p.feature};
-        bound = box_bound(best.squared_distance, h.scale);
+        if (!visit(i, squared_distance)) return;
       }
+      bound = box_bound(squared_distance, h.scale);
     }
     do {
-      if (top == 0) {
-        if (best.triangle == kNoTriangle) return std::nullopt;
-        return best;
-      }
+      if (top == 0) return;
       entry = stack[--top];
     } while (entry.squared_distance > bound);
   }
+}
+
+/// Finds a triangle that is closer to q, or as close and of a lower index.
+void ClosestPointTree::improve(const Vec3& q, ClosestPoint& best) const {
+  visit_near(q, best.squared_distance, [&](std::uint32_t place, double& bound) {
+    const std::uint32_t t = hierarchy_->triangle_at(place);
+    const TrianglePoint p = hierarchy_->closest_at(place, q);
+    if (p.squared_distance > best.squared_distance) return true;
+    if (p.squared_distance == best.squared_distance && t > best.triangle) return true;
+    best = {p.point, p.squared_distance, t, p.feature};
+    bound = best.squared_distance;
+    return true;
+  });
+}
+
+std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_distance) const {
+  if (empty() || !(max_distance >= 0)) return std::nullopt;
+  ClosestPoint best;
+  best.squared_distance = max_distance * max_distance;
+  improve(q, best);
+  if (best.triangle == kNoTriangle) return std::nullopt;
+  return best;
+}
+
+std::optional<ClosestPoint> ClosestPointTree::closest_from(const Vec3& q, std::uint32_t guess) const {
+  if (guess == kNoTriangle || !is_finite(q)) return closest(q);
+  const TrianglePoint p = closest_on_triangle(q, hierarchy_->corners(guess));
+  ClosestPoint best{p.point, p.squared_distance, guess, p.feature};
+  improve(q, best);
+  return best;
+}
+
+bool ClosestPointTree::is_within(const Vec3& q, double max_distance) const {
+  if (empty() || !(max_distance >= 0)) return false;
+  bool found = false;
+  visit_near(q, max_distance * max_distance, [&](std::uint32_t place, double bound) {
+    found = hierarchy_->closest_at(place, q).squared_distance <= bound;
+    return !found;
+  });
+  return found;
 }
 
 void ClosestPointTree::validate() const {

@@ -63,6 +63,10 @@ class ClosestPointTree {
   /// The closest point with a distance of at most `max_distance`; empty if there is none or q is not finite.
   [[nodiscard]] std::optional<ClosestPoint> closest(
       const Vec3& q, double max_distance = std::numeric_limits<double>::infinity()) const;
+  /// The same as closest(q), and sooner if a triangle of the tree that is given as a guess is close to q.
+  [[nodiscard]] std::optional<ClosestPoint> closest_from(const Vec3& q, std::uint32_t guess) const;
+  /// Whether a triangle is at most this far: as closest(), but it ends at the first triangle that is.
+  [[nodiscard]] bool is_within(const Vec3& q, double max_distance) const;
   /// The hit with the least t in [0, max_t], not counting triangle `ignore`. It is watertight: no ray slips
   /// between two triangles that share an edge. Rays within the plane of a triangle do not meet it.
   [[nodiscard]] std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,
@@ -100,6 +104,11 @@ class ClosestPointTree {
                    const Box3& bounds)
       : hierarchy_(std::move(hierarchy)), root_(root), count_(count), bounds_(bounds) {}
 
+  /// Calls visit(place, bound) for places of triangles in the order in which their boxes are near q. `bound`
+  /// is the squared distance that still matters; visit may lower it and returns whether to go on.
+  template <class Visit>
+  void visit_near(const Vec3& q, double squared_distance, Visit&& visit) const;
+  void improve(const Vec3& q, ClosestPoint& best) const;
   template <class Visit>
   bool visit_overlapping(const Box3& box, Visit&& visit) const;
   void validate(Child child, const Box3& within, std::vector<char>& seen) const;

@@ -122,8 +122,10 @@ struct Closest {
   std::uint32_t triangle = ClosestPointTree::kNoTriangle;
 };
 
-Closest find_closest(const ClosestPointTree& to, const Vec3& p) {
-  const auto closest = to.closest(p);
+/// `guess`: a triangle that may be close.
+Closest find_closest(const ClosestPointTree& to, const Vec3& p,
+                     std::uint32_t guess = ClosestPointTree::kNoTriangle) {
+  const auto closest = to.closest_from(p, guess);
   return closest ? Closest{std::sqrt(closest->squared_distance), closest->triangle} : Closest{kInfinity};
 }
 
@@ -223,7 +225,7 @@ class PieceMeasure {
     double spread = 0;
     for (std::size_t i = 0; i < polygon_.count; ++i)
       spread = std::max(spread, distance(polygon_.corners[i], center));
-    const Closest closest = find_closest(target_.tree, center);
+    const Closest closest = find_closest(target_.tree, center, polygon_.closest[0].triangle);
     result_.upper = std::min(result_.upper, closest.distance + spread);
     consider(center, closest);
   }
@@ -332,7 +334,8 @@ class MiddleDistances {
     closest_.resize(added.firsts.size());
     parallel_for(added.firsts.size(), 64, [&](std::size_t n) {
       const std::uint32_t place = added.firsts[n];
-      closest_[n] = find_closest(to, middles(pieces[chosen[place / 3]])[place % 3]);
+      const Piece& piece = pieces[chosen[place / 3]];
+      closest_[n] = find_closest(to, middles(piece)[place % 3], piece.closest[place % 3].triangle);
     });
   }
 
@@ -454,8 +457,13 @@ class CornerDistances {
     for (std::size_t first = 0; first < points_.size(); first += kProgressBlock) {
       progress.check();
       const std::size_t count = std::min(kProgressBlock, points_.size() - first);
-      parallel_for(count, 256, [&](std::size_t i) {
-        closest_[first + i] = find_closest(to, triangles_.point(points_[first + i]));
+      parallel_chunks(count, 256, [&](std::size_t begin, std::size_t end) {
+        // Points that follow each other are often close.
+        std::uint32_t last = ClosestPointTree::kNoTriangle;
+        for (std::size_t i = first + begin; i < first + end; ++i) {
+          closest_[i] = find_closest(to, triangles_.point(points_[i]), last);
+          last = closest_[i].triangle;
+        }
       });
       LoopProgress::count_items(static_cast<double>(count));
     }
@@ -533,7 +541,7 @@ std::vector<std::uint32_t> bound_groups(const TriangleList& triangles, const Clo
   std::vector<ClosestPointTree::Group> groups{tree.whole()}, parts;
   std::vector<char> is_done;
   const auto keeps_bounds = [&](const Vec3& center, double radius) {
-    return changes != nullptr && !changes->surface.closest(center, changes->reach + radius);
+    return changes != nullptr && !changes->surface.is_within(center, changes->reach + radius);
   };
   const auto serves = [&](const Vec3& center, double radius, const ClosestPointTree::Group& group) {
     if (!(radius <= kGroupSize * accept)) return false;

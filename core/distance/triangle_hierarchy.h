@@ -9,6 +9,7 @@
 
 #include "adamas/geometry.h"
 #include "core/base/large_pages.h"
+#include "core/distance/triangle_distance.h"
 
 namespace adamas::inline core {
 
@@ -42,6 +43,11 @@ struct TriangleHierarchy {
   }
   [[nodiscard]] std::uint32_t triangle_at(std::size_t place) const { return order[place] & ~kSliver; }
   [[nodiscard]] bool is_sliver_at(std::size_t place) const { return (order[place] & kSliver) != 0; }
+  /// The closest point of the triangle at a place.
+  [[nodiscard]] TrianglePoint closest_at(std::size_t place, const Vec3& q) const {
+    const std::array<Vec3, 3> at = corners(triangle_at(place));
+    return is_sliver_at(place) ? detail::closest_on_sliver(q, at) : detail::closest_on_proper(q, at);
+  }
   [[nodiscard]] Vec3 to_local(const Vec3& p) const { return scale * (p - center); }
 
   std::vector<Vec3> points;

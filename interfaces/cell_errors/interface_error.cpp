@@ -99,9 +99,12 @@ class Estimator {
     double greatest = 0;
     for (const ContactPolygon& contact : contacts_) {
       const ClosestPointTree& tree = tree_between(contact.front, contact.back);
+      std::uint32_t last = ClosestPointTree::kNoTriangle;
       for (const auto& corner : contact.corners) {
-        const auto closest = tree.closest(cell_.point(corner.weights), diameter_);
-        greatest = std::max(greatest, closest ? std::sqrt(closest->squared_distance) : diameter_);
+        const auto closest = tree.closest_from(cell_.point(corner.weights), last);
+        if (!closest) return diameter_;
+        greatest = std::max(greatest, std::sqrt(closest->squared_distance));
+        last = closest->triangle;
       }
       if (greatest > enough) break;
     }
@@ -145,7 +148,7 @@ class Estimator {
         if (owner != below) above = owner;
       }
       const double reach = target + (high - low) * diameter_;
-      if (!tree_between(below, above).closest(cell_.point(at(low)), reach)) return true;
+      if (!tree_between(below, above).is_within(cell_.point(at(low)), reach)) return true;
     }
     return false;
   }

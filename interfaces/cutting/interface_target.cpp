@@ -71,7 +71,7 @@ bool InterfaceTarget::allows(const LabelledMesh::Sides& sides, const Vec3& p, bo
   // If a third body between the two is thinner than the tolerance, each is still where it should be.
   return std::all_of(sides.values.begin(), sides.values.begin() + 2, [&](std::uint32_t body) {
     const auto found = boundaries_.find(body);
-    return found != boundaries_.end() && found->second.tree.closest(p, tolerance_).has_value();
+    return found != boundaries_.end() && found->second.tree.is_within(p, tolerance_);
   });
 }
 

@@ -15,6 +15,8 @@ namespace {
 /// The greatest number of rounds of measuring and refining. Usually two or three are enough, unless something
 /// cannot be mended.
 constexpr int kMostRounds = 20;
+/// New leaves are measured alone if they are at most this part of all, and else with all.
+constexpr double kNewPart = 0.15;
 /// Rounds for bodies end after this many without an improvement.
 constexpr int kMostPatience = 3;
 /// Torn bodies are mended by moves before cells are split for them if that leaves at most one fault out of
@@ -87,12 +89,32 @@ RefinementEnd Certification::measure_and_refine() {
       if (const auto reason = split_for_bodies(bodies)) return end(*reason, bodies);
       extracted = true;
     } else {
-      std::vector<TetrahedronId> created = refinement_.split_failing(std::move(failing));
-      if (created.empty())
+      if (!split_failing(std::move(failing)))
         return end(state_.budget_spent ? RefinementEnd::kBudget : RefinementEnd::kDepth, bodies);
-      refinement_.refine_to_targets(std::move(created));
     }
   }
+}
+
+/// Splits leaves with a fault, and new ones as long as some are found to have one and are few, so that
+/// finding them takes far less than measuring all interfaces again. Returns whether any were split.
+bool Certification::split_failing(std::vector<TetrahedronId> failing) {
+  bool any = false;
+  for (int round = 0; round < kMostRounds && !failing.empty(); ++round) {
+    std::vector<TetrahedronId> leaves;
+    refinement_.set_observer([&](const auto& /*parents*/, const auto& created) {
+      leaves.insert(leaves.end(), created.begin(), created.end());
+    });
+    std::vector<TetrahedronId> created = refinement_.split_failing(std::move(failing));
+    any = any || !created.empty();
+    refinement_.refine_to_targets(std::move(created));
+    refinement_.set_observer({});
+    if (state_.budget_spent) break;  // some of the leaves may be merged
+    std::erase_if(leaves, [&](TetrahedronId t) { return !state_.hierarchy.is_leaf(t); });
+    failing.clear();
+    if (kNewPart * static_cast<double>(state_.hierarchy.leaf_count()) > static_cast<double>(leaves.size()))
+      failing = shown_.failing_among(leaves);
+  }
+  return any;
 }
 
 /// Compares the bodies shown with the best ones so far, after torn ones are mended; returns whether

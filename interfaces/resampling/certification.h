@@ -50,6 +50,7 @@ class Certification {
   };
 
   RefinementEnd measure_and_refine();
+  bool split_failing(std::vector<TetrahedronId> failing);
   RefinementEnd end(RefinementEnd reason, BodyRounds& bodies);
   [[nodiscard]] bool compare_bodies(BodyRounds& bodies);
   [[nodiscard]] std::optional<RefinementEnd> split_for_bodies(BodyRounds& bodies);

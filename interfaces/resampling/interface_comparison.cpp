@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "interfaces/network/interface_network.h"
+#include "interfaces/resampling/far_points.h"
 
 namespace adamas::interfaces {
 
@@ -32,8 +33,6 @@ constexpr double kRoundOff = 1e-15;
 constexpr double kNearby = 1;
 /// What a triangle of a tree that is built counts as progress.
 constexpr double kTreeWork = 2;
-/// The greatest number of sample points of a line.
-constexpr double kMostPoints = 64;
 /// If more than this part of the shown triangles has changed, all are measured again.
 constexpr double kManyChanges = 0.25;
 constexpr std::uint32_t kNoNumber = InterfaceComparison::kNoPoint;
@@ -519,6 +518,21 @@ std::vector<std::uint32_t> InterfaceComparison::shown_near_far() const {
   return result;
 }
 
+std::vector<std::uint32_t> InterfaceComparison::far_among(const InterfaceMesh& triangles,
+                                                          const Progress& progress) const {
+  const MaterialBoundaries some(triangles, parts_, false);
+  std::vector<std::uint32_t> far;
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    const TriangleList list(some.tree(p));
+    const DistanceBound bound = directed_distance_bound(list, input_.tree(p), measuring_options(), progress);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (bound.triangle_upper[i] > target_) far.push_back(list.index(i));
+    }
+  }
+  sort_unique(far);
+  return far;
+}
+
 double InterfaceComparison::greatest() const {
   double greatest = 0;
   for (const Bounds& b : bounds_) greatest = std::max(greatest, b.distance().upper);
@@ -571,15 +585,13 @@ std::vector<Vec3> InterfaceComparison::far_points(const TriangleList& lines, con
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (!(bound.triangle_upper[i] > target_)) continue;
     const auto [a, b, end] = lines.corners(i);
-    const double steps = std::clamp(std::ceil(2 * distance(a, b) / target_), 1.0, kMostPoints);
     const std::size_t before = result.size();
     seen.clear();
-    for (double s = 0; s <= steps; ++s) {
-      const Vec3 p = a + (s / steps) * (b - a);
-      if (!box_.contains(p)) continue;
+    for_each_sample(a, b, target_, [&](const Vec3& p) {
+      if (!box_.contains(p)) return;
       seen.push_back(p);
-      if (!others.closest(p, target_)) result.push_back(p);
-    }
+      if (!others.is_within(p, target_)) result.push_back(p);
+    });
     if (result.size() == before) result.insert(result.end(), seen.begin(), seen.end());
   }
   return result;
@@ -588,16 +600,7 @@ std::vector<Vec3> InterfaceComparison::far_points(const TriangleList& lines, con
 bool InterfaceComparison::has_far_point(std::uint32_t triangle, std::size_t side,
                                         const Tetrahedron& cell) const {
   const ClosestPointTree& boundary = shown_.tree(input_.parts_of(triangle)[side]);
-  const auto [a, b, c] = input_.all().triangle(triangle);
-  Weights middle{};
-  double count = 0;
-  for (const Weights& w : ClippedTriangle(cell, a, b, c)) {
-    if (!boundary.closest(cell.point(w), target_)) return true;
-    for (std::size_t v = 0; v < 4; ++v) middle[v] += w[v];
-    ++count;
-  }
-  for (double& w : middle) w /= count;
-  return count > 0 && !boundary.closest(cell.point(middle), target_);
+  return has_far_point_in(cell, input_.all().triangle(triangle), boundary, target_);
 }
 
 /// Tightens the bounds of the materials' triangles that are greater than wanted where a distance of `seen`

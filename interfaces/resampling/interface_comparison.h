@@ -74,6 +74,12 @@ class InterfaceComparison {
   /// target, or would be if they moved by less than `most`, stays so. The last measurement must have been of
   /// each triangle.
   [[nodiscard]] std::vector<double> slack(double most) const;
+  /// Returns the input's interfaces.
+  [[nodiscard]] const MaterialBoundaries& input() const { return input_; }
+  [[nodiscard]] const MaterialParts& parts() const { return parts_; }
+  [[nodiscard]] double target() const { return target_; }
+  /// Returns whether junction lines are compared.
+  [[nodiscard]] bool knows_junctions() const { return junctions_known_; }
   /// Returns whether the last measurement was of each triangle.
   [[nodiscard]] bool knows_each() const { return each_; }
   /// Returns an upper bound of the greatest measured distance of any part.
@@ -100,6 +106,10 @@ class InterfaceComparison {
   /// Returns these triangles and those that are as close to a triangle of the input that is too far as what
   /// is shown there at all.
   [[nodiscard]] std::vector<std::uint32_t> shown_near_far() const;
+  /// Returns the numbers of triangles of a mesh, which need not be welded, with points that are, or may be,
+  /// too far from the input's.
+  [[nodiscard]] std::vector<std::uint32_t> far_among(const InterfaceMesh& triangles,
+                                                     const Progress& progress) const;
   /// Returns points of the input's junction lines, and of the shown ones, that are too far from the others.
   [[nodiscard]] const std::array<std::vector<Vec3>, 2>& far_junctions() const { return far_junctions_; }
 

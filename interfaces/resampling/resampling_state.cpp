@@ -1,6 +1,7 @@
 #include "interfaces/resampling/resampling_state.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -40,6 +41,12 @@ Tetrahedron ResamplingState::frame(TetrahedronId t) const {
   const auto v = hierarchy.vertices(t);
   return Tetrahedron({hierarchy.position(v[0]), hierarchy.position(v[1]), hierarchy.position(v[2]),
                       hierarchy.position(v[3])});
+}
+
+Box3 ResamplingState::box(TetrahedronId t) const {
+  Box3 result;
+  for (const VertexId v : hierarchy.vertices(t)) result.extend(hierarchy.position(v));
+  return result;
 }
 
 void ResamplingState::ownership(TetrahedronId t, CellOwnership& result, const OwnershipNeeds& needs) const {
@@ -178,6 +185,35 @@ std::vector<TetrahedronId> ResamplingState::leaves_at(std::span<const Vec3> poin
   }
   parallel_for(of_roots.size(), 1, [&](std::size_t r) { descend(descend, at[of_roots[r][0]], of_roots[r]); });
   return at;
+}
+
+std::vector<TetrahedronId> ResamplingState::leaves_near(std::span<const TetrahedronId> tetrahedra,
+                                                        double distance) const {
+  std::vector<Box3> boxes;
+  boxes.reserve(tetrahedra.size());
+  for (const TetrahedronId t : tetrahedra) boxes.push_back(box(t));
+  const Vec3 reach{distance, distance, distance};
+  // The boxes near a tetrahedron are among those near its parent.
+  const auto descend = [&](const auto& self, TetrahedronId t, std::span<const std::uint32_t> above,
+                           std::vector<TetrahedronId>& found) -> void {
+    const Box3 own = box(t), wide{own.min - reach, own.max + reach};
+    std::vector<std::uint32_t> near;
+    std::ranges::copy_if(above, std::back_inserter(near),
+                         [&](std::uint32_t b) { return wide.touches(boxes[b]); });
+    if (near.empty()) return;
+    if (hierarchy.is_leaf(t)) {
+      found.push_back(t);
+      return;
+    }
+    for (const TetrahedronId child : hierarchy.children(t)) self(self, child, near, found);
+  };
+  std::vector<std::uint32_t> all(boxes.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const auto& roots = hierarchy.roots();
+  return parallel_collect<TetrahedronId>(
+      roots.size(), 1, [&](std::size_t begin, std::size_t end, std::vector<TetrahedronId>& found) {
+        for (std::size_t r = begin; r < end; ++r) descend(descend, roots[r], all, found);
+      });
 }
 
 void ResamplingState::add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& list) const {

@@ -92,6 +92,8 @@ struct ResamplingState {
   [[nodiscard]] double estimate_target() const { return kEstimatePart * options.interface_error; }
   /// Returns the geometry of a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
+  /// Returns the box round a tetrahedron.
+  [[nodiscard]] Box3 box(TetrahedronId t) const;
   /// Returns the volume of a tetrahedron, in the cube of the unit of length.
   [[nodiscard]] double volume(TetrahedronId t) const;
   /// Finds the ownership of a tetrahedron of the tree, which need not be a leaf.
@@ -119,6 +121,10 @@ struct ResamplingState {
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
   /// Returns the leaves that hold these points.
   [[nodiscard]] std::vector<TetrahedronId> leaves_at(std::span<const Vec3> points) const;
+  /// Returns the leaves whose boxes are at most this far, along each axis, from those of some tetrahedra; in
+  /// the order of leaves.
+  [[nodiscard]] std::vector<TetrahedronId> leaves_near(std::span<const TetrahedronId> tetrahedra,
+                                                       double distance) const;
   /// Adds the leaf that holds a point to the list if its diameter is greater than `finest`.
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& list) const;
   /// Returns the name of a stage with the number of leaves.

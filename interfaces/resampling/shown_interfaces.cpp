@@ -7,6 +7,7 @@
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/resampling/cell_evaluation.h"
+#include "interfaces/resampling/nearby_comparison.h"
 
 namespace adamas::interfaces {
 
@@ -82,6 +83,19 @@ void ShownInterfaces::for_each_batch(const std::vector<TetrahedronId>& leaves,
   }
 }
 
+/// Returns a builder with what these leaves show.
+ContactMeshBuilder ShownInterfaces::builder_for(const std::vector<TetrahedronId>& leaves) const {
+  ContactMeshBuilder builder(kWeldTolerance * state_.source.box.diagonal());
+  const auto [polygons, corners] = counts_of(state_, leaves);
+  builder.reserve(polygons, corners);
+  for_each_batch(leaves, [&](std::span<const ContactBuffer> buffers) {
+    std::vector<const ContactBuffer*> contacts;
+    for (const ContactBuffer& buffer : buffers) contacts.push_back(&buffer);
+    builder.append(contacts);
+  });
+  return builder;
+}
+
 /// Only leaves that are new or have changed are computed.
 ExtractedInterfaces ShownInterfaces::extract() {
   const std::vector<TetrahedronId> leaves = state_.leaves();
@@ -93,14 +107,7 @@ ExtractedInterfaces ShownInterfaces::extract() {
   LoopProgress::begin_part(found, all);
   find_contacts(state_, leaves);
   LoopProgress::begin_part(found + kBeforeWelding * (1 - found), all);
-  ContactMeshBuilder builder(kWeldTolerance * state_.source.box.diagonal());
-  const auto [polygons, corners] = counts_of(state_, leaves);
-  builder.reserve(polygons, corners);
-  for_each_batch(leaves, [&](std::span<const ContactBuffer> buffers) {
-    std::vector<const ContactBuffer*> contacts;
-    for (const ContactBuffer& buffer : buffers) contacts.push_back(&buffer);
-    builder.append(contacts);
-  });
+  ContactMeshBuilder builder = builder_for(leaves);
   ++number_;
   return std::exchange(extracted_,
                        finish_extraction(state_.source.network->table(), builder, state_.options.conserve));
@@ -204,6 +211,69 @@ std::vector<TetrahedronId> ShownInterfaces::leaves_with_far_input() const {
       result.push_back(all[i]);
   }
   return result;
+}
+
+/// Extracts what is shown within the target of these leaves.
+InterfaceMesh ShownInterfaces::extract_near(const std::vector<TetrahedronId>& leaves) const {
+  const std::vector<TetrahedronId> near = state_.leaves_near(leaves, comparison_.target());
+  find_contacts(state_, near);
+  ContactMeshBuilder builder = builder_for(near);
+  return finish_extraction(state_.source.network->table(), builder).mesh;
+}
+
+/// Adds those of these leaves that show points that are too far from the input's interfaces.
+void ShownInterfaces::add_leaves_with_far_shown(const std::vector<TetrahedronId>& among,
+                                                std::vector<TetrahedronId>& failing) const {
+  const InterfaceTable& table = state_.source.network->table();
+  InterfaceMesh triangles;
+  std::vector<TetrahedronId> leaf_of;
+  ContactBuffer shown;
+  for (const TetrahedronId t : among) {
+    shown.clear();
+    state_.add_contacts(t, shown);
+    shown.for_each_polygon([&](auto front, auto back, std::span<const ContactBuffer::Corner> corners) {
+      const auto first = static_cast<std::uint32_t>(triangles.points.size());
+      for (const ContactBuffer::Corner& corner : corners) triangles.points.push_back(corner.position);
+      for (std::uint32_t c = 2; c < corners.size(); ++c) {
+        triangles.triangles.push_back(
+            {{first, first + c - 1, first + c}, table.material(BodyId(front)), table.material(BodyId(back))});
+        leaf_of.push_back(t);
+      }
+    });
+  }
+  const double finest = kFinestForApproximation * state_.options.interface_error;
+  for (const std::uint32_t t : comparison_.far_among(triangles, state_.progress)) {
+    if (state_.frame(leaf_of[t]).diameter() > finest) failing.push_back(leaf_of[t]);
+  }
+}
+
+std::vector<TetrahedronId> ShownInterfaces::failing_among(const std::vector<TetrahedronId>& leaves) const {
+  state_.report("measuring new cells");
+  const double target = state_.options.interface_error;
+  const NearbyComparison nearby(comparison_, extract_near(leaves));
+  struct Far {
+    bool input = false;
+    std::vector<Vec3> input_junctions, shown_junctions;
+  };
+  std::vector<Far> far(leaves.size());
+  parallel_for(leaves.size(), 16, [&](std::size_t i) {
+    const Tetrahedron cell = state_.frame(leaves[i]);
+    far[i].input = std::ranges::any_of(state_.hierarchy.payload(leaves[i]).triangles,
+                                       [&](std::uint32_t t) { return nearby.has_far_point(t, cell); });
+    const Box3 box = state_.box(leaves[i]);
+    far[i].input_junctions = nearby.far_input_junctions(box);
+    far[i].shown_junctions = nearby.far_shown_junctions(box);
+  });
+  std::vector<TetrahedronId> failing;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (far[i].input && state_.frame(leaves[i]).diameter() > kFinestForInput * target)
+      failing.push_back(leaves[i]);
+    for (const Vec3& p : far[i].input_junctions) state_.add_leaf_at(p, kFinestForInput * target, failing);
+    for (const Vec3& p : far[i].shown_junctions)
+      state_.add_leaf_at(p, kFinestForShownJunctions * target, failing);
+  }
+  add_leaves_with_far_shown(leaves, failing);
+  return failing;
 }
 
 }  // namespace adamas::interfaces

@@ -56,8 +56,16 @@ class ShownInterfaces {
   void clear() { extracted_ = {}; }
   /// Returns the leaves where the measured distance is, or may be, greater than wanted.
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves() const;
+  /// Returns leaves where the distance is, or may be, greater than wanted among these ones, which are new
+  /// since the last measurement. Only interfaces near them are extracted for it, and sample points stand for
+  /// all points, so that the next measurement may find others.
+  [[nodiscard]] std::vector<TetrahedronId> failing_among(const std::vector<TetrahedronId>& leaves) const;
 
  private:
+  [[nodiscard]] ContactMeshBuilder builder_for(const std::vector<TetrahedronId>& leaves) const;
+  [[nodiscard]] InterfaceMesh extract_near(const std::vector<TetrahedronId>& leaves) const;
+  void add_leaves_with_far_shown(const std::vector<TetrahedronId>& among,
+                                 std::vector<TetrahedronId>& failing) const;
   void for_each_batch(const std::vector<TetrahedronId>& leaves,
                       const std::function<void(std::span<const ContactBuffer>)>& visit) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_with_far_input() const;

@@ -177,7 +177,7 @@ void Simplifier::tighten_round(const InterfaceComparison& comparison, const Inte
   for (std::uint32_t i = 0; i < places.size(); ++i) as_points.push_back({i, i, i});
   const ClosestPointTree tree(places, as_points);
   for (std::size_t p = 0; p < mesh_.points.size(); ++p) {
-    if (tree.closest(mesh_.points[p], 2 * options_.error)) limit_parts_[p] *= kTighter;
+    if (tree.is_within(mesh_.points[p], 2 * options_.error)) limit_parts_[p] *= kTighter;
   }
 }
 

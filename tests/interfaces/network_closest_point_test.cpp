@@ -4,6 +4,8 @@
 #include <CGAL/Simple_cartesian.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
 #include "tests/interfaces/network_meshes.h"
@@ -88,6 +90,9 @@ TEST(ClosestPointTree, EqualsBruteForceOnRandomSoups) {
       const double d = std::sqrt(expected.squared_distance);
       EXPECT_TRUE(soup.tree.closest(q, d * 1.000001));
       EXPECT_FALSE(soup.tree.closest(q, d * 0.999999));
+      expect_same(*soup.tree.closest_from(q, static_cast<std::uint32_t>(random() % count)), expected);
+      EXPECT_TRUE(soup.tree.is_within(q, d * 1.000001));
+      EXPECT_FALSE(soup.tree.is_within(q, d * 0.999999));
     }
   }
 }
@@ -150,6 +155,9 @@ TEST(ClosestPointTree, AnswersOddQuestions) {
   EXPECT_FALSE(soup.tree.closest({infinity, 0, 0}));
   EXPECT_FALSE(soup.tree.closest({0, 0, 0}, -1));
   EXPECT_FALSE(soup.tree.closest({0, 0, 0}, nan));
+  EXPECT_FALSE(soup.tree.is_within({nan, 0, 0}, infinity));
+  EXPECT_FALSE(soup.tree.is_within({0, 0, 0}, nan));
+  EXPECT_FALSE(ClosestPointTree().is_within({0, 0, 0}, infinity));
   EXPECT_TRUE(soup.tree.closest({1e30, 0, 0}));
   const Vec3 corner = soup.points[0];
   EXPECT_EQ(soup.tree.closest(corner, 0)->squared_distance, 0);
@@ -270,8 +278,9 @@ TEST(ClosestPointTree, BoxesOverlapWhatComesCloseToTheirInside) {
       for (int step = 0; step < 400; ++step) {
         Vec3 in_box;
         for (int axis = 0; axis < 3; ++axis) in_box[axis] = std::clamp(p[axis], box.min[axis], box.max[axis]);
-        p = closest_on_triangle(in_box, c).point;
+        const Vec3 last = std::exchange(p, closest_on_triangle(in_box, c).point);
         gap = distance(p, in_box);
+        if (p == last) break;
       }
       const bool listed = std::binary_search(found.begin(), found.end(), t);
       if (gap < 1e-12) {
