@@ -256,10 +256,10 @@ ClosestPointTree tree_of(const InterfaceMesh& mesh) {
 
 /// Joins parts that see each other through their region. Returns the number of inconsistent rays.
 std::size_t join_by_rays(const InterfaceMesh& mesh, const std::vector<char>& collapsed, const Box3* domain,
-                         const ClosestPointTree* known_tree, DisjointSets& sets) {
+                         DisjointSets& sets) {
   const auto parts = parts_to_join(mesh, collapsed, sets);
   if (parts.empty()) return 0;
-  const ClosestPointTree tree = known_tree != nullptr ? *known_tree : tree_of(mesh);
+  const ClosestPointTree tree = tree_of(mesh);
   const BodyRays rays(mesh, tree, domain);
   std::vector<BodyRays::Result> results(parts.size());
   parallel_for(parts.size(), 1, [&](std::size_t i) { results[i] = rays.shoot(parts[i]); });
@@ -321,17 +321,16 @@ void join_flat_parts(const InterfaceMesh& mesh, const EdgeFans& fans, const std:
 }  // namespace
 
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain) {
-  return find_bodies(mesh, EdgeFans(mesh, domain), domain, nullptr);
+  return find_bodies(mesh, EdgeFans(mesh, domain), domain);
 }
 
-Bodies find_bodies(const InterfaceMesh& mesh, const EdgeFans& fans, const Box3* domain,
-                   const ClosestPointTree* tree) {
+Bodies find_bodies(const InterfaceMesh& mesh, const EdgeFans& fans, const Box3* domain) {
   Bodies bodies;
   DisjointSets sets(2 * mesh.triangles.size());
   const std::vector<char> collapsed = find_collapsed(mesh, fans);
   bodies.inconsistent_edges = join_round_edges(fans, sets);
   join_flat_parts(mesh, fans, collapsed, sets);
-  bodies.inconsistent_rays = join_by_rays(mesh, collapsed, domain, tree, sets);
+  bodies.inconsistent_rays = join_by_rays(mesh, collapsed, domain, sets);
 
   std::vector<std::uint32_t> roots;
   const auto count = static_cast<std::uint32_t>(2 * mesh.triangles.size());

@@ -33,8 +33,7 @@ struct Bodies {
 /// its faces to the greatest corner. If `domain` is null, the regions of one material that reach infinity are
 /// one body. Points must be finite and indices within range.
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain);
-/// The same with the mesh's fans of triangles in that domain. `tree` (may be null): a tree of its triangles.
-Bodies find_bodies(const InterfaceMesh& mesh, const EdgeFans& fans, const Box3* domain,
-                   const ClosestPointTree* tree);
+/// The same with the mesh's fans of triangles in that domain.
+Bodies find_bodies(const InterfaceMesh& mesh, const EdgeFans& fans, const Box3* domain);
 
 }  // namespace adamas::interfaces

@@ -1,6 +1,15 @@
 #include "interfaces/network/body_topology.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
 #include "core/base/disjoint_sets.h"
+#include "core/base/loop_progress.h"
+#include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/network/bodies.h"
 #include "interfaces/network/edge_fans.h"
 
@@ -8,52 +17,78 @@ namespace adamas::interfaces {
 
 namespace {
 
+MaterialId as_material(BodyId body) { return MaterialId(body.value); }
+
 /// Returns the number of a corner of a side of a triangle; both sides have three.
 std::uint32_t corner_index(std::uint32_t triangle, int side, std::size_t corner) {
   return 6 * triangle + 3 * static_cast<std::uint32_t>(side) + static_cast<std::uint32_t>(corner);
 }
 
+/// Counts faces, edges and points of bodies' boundaries.
 class EulerCounter {
  public:
-  EulerCounter(const InterfaceMesh& mesh, const EdgeFans& fans, IdVector<BodyId, BodyTopology>& result)
-      : mesh_(mesh), fans_(fans), corners_(6 * mesh.triangles.size()), result_(result) {}
+  /// Triangles count with their first corner, and edges with their lower end. `counts`: by point, whether
+  /// what belongs to it is counted; all triangles round these points must be there.
+  EulerCounter(const InterfaceMesh& mesh, const EdgeFans& fans, std::vector<char> counts)
+      : mesh_(mesh), fans_(fans), counts_(std::move(counts)), corners_(6 * mesh.triangles.size()) {}
 
-  void count() {
+  /// Calls add(body, number) with parts of the Euler characteristics.
+  template <class Add>
+  void count(Add&& add) {
+    const auto body = [&](std::uint32_t triangle, int side) {
+      return BodyId(fans_.material(triangle, side).value);
+    };
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-      for (int side = 0; side < 2; ++side) ++euler(t, side);
+      if (counts_at(t, 0)) add(body(t, 0), 1), add(body(t, 1), 1);
     }
     EdgeFans::Fan fan;
     for (std::size_t edge = 0; edge < fans_.size(); ++edge) {
+      const auto [low, high] = fans_.ends(edge);
+      if (counts_[low] == 0 && counts_[high] == 0) continue;
       fans_.wedges(edge, fan);
-      count_edge(edge, fan);
+      join_corners(edge, fan);
+      if (counts_[low] != 0) count_edge(fan, [&](std::uint32_t t, int side) { add(body(t, side), -1); });
     }
     for (std::uint32_t c = 0; c < 6 * mesh_.triangles.size(); ++c) {
-      if (corners_.find(c) == c) ++euler(c / 6, static_cast<int>(c % 6 / 3));
+      if (counts_at(c / 6, c % 3) && corners_.find(c) == c) add(body(c / 6, static_cast<int>(c % 6 / 3)), 1);
     }
   }
 
  private:
-  std::int64_t& euler(std::uint32_t triangle, int side) {
-    return result_[BodyId(fans_.material(triangle, side).value)].euler;
+  [[nodiscard]] bool counts_at(std::uint32_t triangle, std::size_t corner) const {
+    return counts_[fans_.welded(mesh_.triangles[triangle].points[corner])] != 0;
   }
 
-  /// Counts one edge for each wedge of one body between two sides, and one for a side without a neighbour.
-  void count_edge(std::size_t edge, const EdgeFans::Fan& fan) {
-    const auto ends = fans_.ends(edge);
+  /// Calls visit(blade, next blade, whether the wedge between them is one of a single body) round an edge.
+  template <class Visit>
+  void for_each_wedge(const EdgeFans::Fan& fan, Visit&& visit) const {
     const std::size_t n = fan.blades.size();
     for (std::size_t i = 0; i < n; ++i) {
       const Blade &a = fan.blades[i], &b = fan.blades[(i + 1) % n];
-      const int ahead = EdgeFans::side_ahead(a), behind = EdgeFans::side_behind(b);
-      --euler(a.triangle, ahead);
-      if (n > 1 && i != fan.outside_wedge &&
-          fans_.material(a.triangle, ahead) == fans_.material(b.triangle, behind)) {
-        for (const std::uint32_t end : ends)
-          corners_.join(corner_index(a.triangle, ahead, corner_at(a.triangle, end)),
-                        corner_index(b.triangle, behind, corner_at(b.triangle, end)));
-      } else {
-        --euler(b.triangle, behind);
-      }
+      visit(a, b,
+            n > 1 && i != fan.outside_wedge &&
+                fans_.material(a.triangle, EdgeFans::side_ahead(a)) ==
+                    fans_.material(b.triangle, EdgeFans::side_behind(b)));
     }
+  }
+
+  /// Joins the corners of triangles that bound the same wedge.
+  void join_corners(std::size_t edge, const EdgeFans::Fan& fan) {
+    for_each_wedge(fan, [&](const Blade& a, const Blade& b, bool of_one_body) {
+      if (!of_one_body) return;
+      for (const std::uint32_t end : fans_.ends(edge))
+        corners_.join(corner_index(a.triangle, EdgeFans::side_ahead(a), corner_at(a.triangle, end)),
+                      corner_index(b.triangle, EdgeFans::side_behind(b), corner_at(b.triangle, end)));
+    });
+  }
+
+  /// Visits one side for each wedge of one body between two sides, and each side without a neighbour.
+  template <class Visit>
+  void count_edge(const EdgeFans::Fan& fan, Visit&& visit) const {
+    for_each_wedge(fan, [&](const Blade& a, const Blade& b, bool of_one_body) {
+      visit(a.triangle, EdgeFans::side_ahead(a));
+      if (!of_one_body) visit(b.triangle, EdgeFans::side_behind(b));
+    });
   }
 
   [[nodiscard]] std::size_t corner_at(std::uint32_t triangle, std::uint32_t point) const {
@@ -63,20 +98,105 @@ class EulerCounter {
 
   const InterfaceMesh& mesh_;
   const EdgeFans& fans_;
+  std::vector<char> counts_;
   DisjointSets corners_;
-  IdVector<BodyId, BodyTopology>& result_;
 };
+
+/// Some triangles of a network as a mesh with bodies in place of materials.
+struct NetworkPart {
+  InterfaceMesh mesh;
+  std::vector<std::uint32_t> points;  ///< those of the network, ascending, by point of the mesh
+
+  /// `triangles`: those of the network, ascending.
+  NetworkPart(const InterfaceNetwork& network, const std::vector<std::uint32_t>& triangles) {
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t p : network.triangles()[t]) points.push_back(p);
+    }
+    sort_unique(points);
+    for (const std::uint32_t p : points) mesh.points.push_back(network.points()[p]);
+    mesh.triangles.reserve(triangles.size());
+    for (const std::uint32_t t : triangles) {
+      const auto& [front, back] = network.table().sides(network.interface_of(t));
+      InterfaceTriangle triangle{network.triangles()[t], as_material(front), as_material(back)};
+      for (std::uint32_t& p : triangle.points)
+        p = static_cast<std::uint32_t>(std::ranges::lower_bound(points, p) - points.begin());
+      mesh.triangles.push_back(triangle);
+    }
+  }
+};
+
+/// Numbers the bodies that a mesh has in place of materials; returns them by their numbers.
+std::vector<MaterialId> number_bodies(InterfaceMesh& mesh) {
+  std::vector<MaterialId> bodies;
+  for (const InterfaceTriangle& t : mesh.triangles) bodies.insert(bodies.end(), {t.front, t.back});
+  sort_unique(bodies);
+  for (InterfaceTriangle& t : mesh.triangles) {
+    for (MaterialId* side : {&t.front, &t.back})
+      *side = MaterialId(static_cast<std::size_t>(std::ranges::lower_bound(bodies, *side) - bodies.begin()));
+  }
+  return bodies;
+}
+
+/// Returns the parts of the Euler characteristics that belong to the points [first, last).
+std::vector<std::pair<BodyId, std::int64_t>> euler_at(const InterfaceNetwork& network, const Box3& domain,
+                                                      std::size_t first, std::size_t last) {
+  std::vector<std::uint32_t> triangles;
+  for (std::size_t p = first; p < last; ++p) {
+    const auto at = network.triangles_at(static_cast<std::uint32_t>(p));
+    triangles.insert(triangles.end(), at.begin(), at.end());
+  }
+  sort_unique(triangles);
+  NetworkPart part(network, triangles);
+  std::vector<char> counts;
+  counts.reserve(part.points.size());
+  for (const std::uint32_t p : part.points) counts.push_back(first <= p && p < last ? 1 : 0);
+  const std::vector<MaterialId> bodies = number_bodies(part.mesh);
+  const EdgeFans fans(part.mesh, &domain);
+  std::vector<std::pair<BodyId, std::int64_t>> found;
+  for (const MaterialId body : bodies) found.emplace_back(body.value, 0);
+  EulerCounter(part.mesh, fans, std::move(counts)).count([&](BodyId number, std::int64_t by) {
+    found[number.value].second += by;
+  });
+  return found;
+}
 
 }  // namespace
 
-IdVector<BodyId, BodyTopology> body_topology(InterfaceMesh mesh, std::size_t bodies, const Box3& domain,
-                                             const ClosestPointTree* tree) {
+IdVector<BodyId, BodyTopology> body_topology(InterfaceMesh mesh, std::size_t bodies, const Box3& domain) {
   mesh.materials.assign(bodies, {});
   const EdgeFans fans(mesh, &domain);
   IdVector<BodyId, BodyTopology> result(bodies);
-  for (const MaterialId body : find_bodies(mesh, fans, &domain, tree).materials)
+  for (const MaterialId body : find_bodies(mesh, fans, &domain).materials)
     ++result[BodyId(body.value)].pieces;
-  EulerCounter(mesh, fans, result).count();
+  EulerCounter(mesh, fans, std::vector<char>(mesh.points.size(), 1)).count([&](BodyId body, std::int64_t by) {
+    result[body].euler += by;
+  });
+  return result;
+}
+
+IdVector<BodyId, BodyTopology> body_topology(const InterfaceNetwork& network, const Box3& domain,
+                                             std::size_t points_at_once) {
+  const std::size_t bodies = network.table().body_count();
+  if (network.has_open_border() || network.inconsistencies() > 0) {
+    std::vector<std::uint32_t> all(network.triangles().size());
+    std::iota(all.begin(), all.end(), 0u);
+    return body_topology(std::move(NetworkPart(network, all).mesh), bodies, domain);
+  }
+  IdVector<BodyId, BodyTopology> result(bodies);
+  const std::size_t points = network.points().size();
+  const std::size_t blocks = (points + points_at_once - 1) / points_at_once;
+  std::vector<std::vector<std::pair<BodyId, std::int64_t>>> found(blocks);
+  parallel_for(blocks, 1, [&](std::size_t block) {
+    LoopProgress::check();
+    const std::size_t first = block * points_at_once;
+    found[block] = euler_at(network, domain, first, std::min(points, first + points_at_once));
+  });
+  for (const auto& parts : found) {
+    for (const auto& [body, by] : parts) result[body].euler += by;
+  }
+  for (InterfaceId i(0); i.value < network.table().interface_count(); ++i.value) {
+    for (const BodyId body : network.table().sides(i)) result[body].pieces = 1;
+  }
   return result;
 }
 

@@ -65,6 +65,11 @@ class InterfaceNetwork {
     const auto [a, b, c] = triangle_corners(triangle);
     return normalized(cross(b - a, c - a));
   }
+  /// Returns the triangles that have this point as a corner, ascending.
+  [[nodiscard]] std::span<const std::uint32_t> triangles_at(std::uint32_t point) const {
+    return std::span(point_triangles_)
+        .subspan(point_starts_[point], point_starts_[point + 1] - point_starts_[point]);
+  }
   [[nodiscard]] InterfaceId interface_of(std::uint32_t triangle) const { return interface_of_[triangle]; }
   [[nodiscard]] std::span<const InterfaceId> interfaces_of_triangles() const { return interface_of_; }
   /// Returns whether an edge of a single triangle lies inside the domain.

@@ -13,18 +13,6 @@ using Pair = std::array<BodyId, 2>;
 
 MaterialId as_material(BodyId body) { return MaterialId(body.value); }
 
-/// Returns the interfaces as a mesh with bodies in place of materials.
-InterfaceMesh mesh_of_bodies(const InterfaceNetwork& network) {
-  InterfaceMesh mesh;
-  mesh.points.assign(network.points().begin(), network.points().end());
-  mesh.triangles.reserve(network.triangles().size());
-  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
-    const auto& [front, back] = network.table().sides(network.interface_of(t));
-    mesh.triangles.push_back({network.triangles()[t], as_material(front), as_material(back)});
-  }
-  return mesh;
-}
-
 bool contains(Box3 box, std::span<const Vec3> points) {
   const double margin = kOnDomainFace * box.diagonal();
   box.min -= {margin, margin, margin};
@@ -46,7 +34,7 @@ IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::siz
 BodyComparison::BodyComparison(const ResamplingSource& source)
     : source_(source), sizes_(source.network->table().body_count(), 0.0) {
   const InterfaceNetwork& network = *source.network;
-  findings_.report.input = body_topology(mesh_of_bodies(network), sizes_.size(), source.box, &network.tree());
+  findings_.report.input = body_topology(network, source.box);
   findings_.report.comparable =
       !network.has_open_border() && network.inconsistencies() == 0 && contains(source.box, network.points());
   for (BodyId b(0); b.value < sizes_.size(); ++b.value) sizes_[b] = network.tree(b).bounds().diagonal();

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/parallel.h"
+#include "datasets/scene.h"
+#include "datasets/scene_interfaces.h"
+#include "datasets/scene_sampling.h"
+#include "interfaces/input/grid_source.h"
+#include "interfaces/input/mesh_source.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
@@ -100,14 +104,70 @@ TEST(BodyTopology, DoesNotDependOnOrder) {
   add_torus(mesh, {0.5, 0.5, 0.5}, 0.3, 0.1, MaterialId(0), MaterialId(1));
   test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.1, MaterialId(0), MaterialId(2));
   const auto expected = body_topology(mesh, 3, test::unit_box());
-  const ClosestPointTree tree(mesh.points, test::triangles_of(mesh));
-  EXPECT_EQ(body_topology(mesh, 3, test::unit_box(), &tree), expected);
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 5; ++trial) {
     std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
     for (InterfaceTriangle& t : mesh.triangles)
       std::rotate(t.points.begin(), t.points.begin() + random() % 3, t.points.end());
     EXPECT_EQ(body_topology(mesh, 3, test::unit_box()), expected);
+  }
+}
+
+/// Returns the interfaces of a network as a mesh with bodies in place of materials.
+InterfaceMesh mesh_of_bodies(const InterfaceNetwork& network) {
+  InterfaceMesh mesh;
+  mesh.points.assign(network.points().begin(), network.points().end());
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+    const auto& [front, back] = network.table().sides(network.interface_of(t));
+    mesh.triangles.push_back({network.triangles()[t], MaterialId(front.value), MaterialId(back.value)});
+  }
+  return mesh;
+}
+
+void expect_topology_of_mesh(const InterfaceNetwork& network, const Box3& box) {
+  ASSERT_EQ(network.inconsistencies(), 0u);
+  ASSERT_FALSE(network.has_open_border());
+  const auto expected = body_topology(mesh_of_bodies(network), network.table().body_count(), box);
+  for (const std::size_t points_at_once : {200u, 1u << 20}) {
+    SCOPED_TRACE(points_at_once);
+    EXPECT_EQ(body_topology(network, box, points_at_once), expected);
+  }
+}
+
+/// Returns labels of single voxels, a part of which are not the first one.
+MultiMaterialData random_labels(std::uint16_t materials, double part, std::mt19937_64& random) {
+  MultiMaterialData data;
+  data.source = "labels";
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i <= 9 - a; ++i) data.grid.nodes[a].push_back(static_cast<double>(i));
+  }
+  for (std::uint16_t m = 0; m < materials; ++m) data.materials.push_back(std::to_string(m));
+  for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+    const bool first = std::uniform_real_distribution()(random) >= part;
+    data.labels.push_back(first ? std::uint16_t{0}
+                                : static_cast<std::uint16_t>(1 + random() % (materials - 1)));
+  }
+  return data;
+}
+
+/// Whatever number of points is looked at once, the bodies of a network have the topology of its mesh.
+TEST(BodyTopology, OfANetworkIsThatOfItsMesh) {
+  std::mt19937_64 random(7);
+  for (const std::uint16_t materials : {2, 4}) {
+    for (const double part : {0.1, 0.5}) {
+      SCOPED_TRACE(part);
+      const MultiMaterialData data = random_labels(materials, part, random);
+      const ResamplingSource source = make_grid_source(data);
+      expect_topology_of_mesh(*source.network, source.box);
+    }
+  }
+  for (const char* name : {"voronoi10", "shell3", "random", "tjunction"}) {
+    SCOPED_TRACE(name);
+    const datasets::Scene scene = datasets::make_scene(name, 2);
+    const MultiMaterialData data = datasets::sample_scene(scene, {7, 8, 9});
+    expect_topology_of_mesh(*make_grid_source(data).network, scene.box());
+    const InterfaceMesh mesh = datasets::scene_interfaces(scene, 0.1);
+    expect_topology_of_mesh(*make_mesh_source(mesh, scene.box(), nullptr).network, scene.box());
   }
 }
 

@@ -171,8 +171,8 @@ TEST(SeriesFrames, GoOnAfterAStepThatIsDamaged) {
 
 TEST(SeriesFrames, ReadLessOftenWhereMoreIsReadAtATime) {
   const test::Scratch folder;
-  const TestSeries<std::uint8_t> series({48, 40, 34}, Motion::kWaves, 32);
-  build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(32));
+  const TestSeries<std::uint8_t> series({48, 40, 34}, Motion::kWaves, 16);
+  build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(16));
   std::map<std::uint64_t, std::uint64_t> reads, bytes;
   for (const std::uint64_t at_a_time : {0u, 4'000u, 1'000'000u}) {
     StoreFile file(folder / "a.adm");
@@ -186,7 +186,7 @@ TEST(SeriesFrames, ReadLessOftenWhereMoreIsReadAtATime) {
     wanted.isovalue = 60.5;
     wanted.viewpoint.target = series.steps[0].grid.box().center();
     wanted.viewpoint.eye = wanted.viewpoint.target + Vec3{70, 60, 80};
-    for (const std::uint32_t step : steps_in_order(PlayOrder::kForward, 0, 31)) frames->next(step, wanted);
+    for (const std::uint32_t step : steps_in_order(PlayOrder::kForward, 0, 15)) frames->next(step, wanted);
     reads[at_a_time] = shared->page_reads();
     bytes[at_a_time] = file.bytes_read();
   }

@@ -210,8 +210,8 @@ class WholeArrays {
 TEST(SeriesGradients, StripsAreTheWholeArrays) {
   const std::vector<GradientSmoothingOptions> ways = {
       {}, {0, 1, 0.25, 1}, {2, 1, 0.25, 3}, {0, 3, 0.1, 2}, {1, 2, 0, 1}, {1, 5, 4, 7}};
-  for (const Sizes& sizes : {Sizes{1, 1, 1}, {5, 1, 3}, {9, 50, 5}, {11, 37, 12}, {3, 90, 14}}) {
-    for (const std::size_t count : {2, 7}) {
+  for (const Sizes& sizes : {Sizes{1, 1, 1}, {5, 1, 3}, {9, 50, 5}, {3, 70, 12}}) {
+    for (const std::size_t count : {2, 5}) {
       const Series series = moving(sizes, count);
       for (const GradientSmoothingOptions& way : ways) {
         GradientPageOptions options;

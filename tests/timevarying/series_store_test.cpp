@@ -71,7 +71,7 @@ TYPED_TEST_SUITE(SeriesStoreOf, SampleTypes);
 TYPED_TEST(SeriesStoreOf, GivesAllStepsBack) {
   const test::Scratch folder;
   for (const Motion motion : {Motion::kStill, Motion::kLinear, Motion::kWaves, Motion::kRandom}) {
-    const TestSeries<TypeParam> series({19, 18, 9}, motion, 11);
+    const TestSeries<TypeParam> series({18, 10, 9}, motion, 7);
     for (const std::uint32_t block : {1u, 4u, 32u}) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << ", blocks of " << block);
       build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(block));
@@ -79,7 +79,7 @@ TYPED_TEST(SeriesStoreOf, GivesAllStepsBack) {
       if (this->HasFatalFailure()) return;
     }
     for (const SampleCoding coding : {SampleCoding::kSplitEdge, SampleCoding::kPlain}) {
-      build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8, coding));
+      build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(5, coding));
       expect_steps(folder / "a.adm", series);
     }
   }
@@ -258,8 +258,8 @@ TEST(SeriesStore, RestoresManyStepsInOneCall) {
 TEST(SeriesStore, FindsTheStepsThatAreDamaged) {
   const test::Scratch folder;
   const auto path = folder / "a.adm";
-  const TestSeries<std::uint8_t> series({19, 18, 9}, Motion::kWaves, 20);
-  build_series(path, "a.adm", series.source(), with_blocks(16));
+  const TestSeries<std::uint8_t> series({18, 10, 9}, Motion::kWaves, 12);
+  build_series(path, "a.adm", series.source(), with_blocks(8));
   const std::string whole = test::bytes_of(path);
   std::size_t partly = 0;
   for (std::size_t at = 40; at < whole.size() / 2; at += whole.size() / 60) {
@@ -269,7 +269,7 @@ TEST(SeriesStore, FindsTheStepsThatAreDamaged) {
     StoreFile file(path);
     const RestoredPart part = restored_part(file.header().grid, 0, {}, "a.adm");
     std::vector<std::uint32_t> expected;
-    for (std::uint32_t step = 0; step < 20; ++step) {
+    for (std::uint32_t step = 0; step < 12; ++step) {
       try {
         restore_step(
             file, step, part, 0, [](auto) {}, SilentProgress::instance());
@@ -277,9 +277,9 @@ TEST(SeriesStore, FindsTheStepsThatAreDamaged) {
         expected.push_back(step);
       }
     }
-    EXPECT_EQ(damaged_steps(file, {0, 19}, part, 1 << 24, SilentProgress::instance()), expected) << at;
+    EXPECT_EQ(damaged_steps(file, {0, 11}, part, 1 << 24, SilentProgress::instance()), expected) << at;
     EXPECT_EQ(verify_store(file, 0, SilentProgress::instance()).bad_steps, expected) << at;
-    partly += expected.empty() || expected.size() == 20 ? 0 : 1;
+    partly += expected.empty() || expected.size() == 12 ? 0 : 1;
   }
   EXPECT_GT(partly, 5u);
 }
