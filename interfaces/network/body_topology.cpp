@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -102,33 +101,75 @@ class EulerCounter {
   DisjointSets corners_;
 };
 
-/// Some triangles of a network as a mesh with bodies in place of materials.
-struct NetworkPart {
-  InterfaceMesh mesh;
-  std::vector<std::uint32_t> points;  ///< those of the network, ascending, by point of the mesh
-
-  /// `triangles`: those of the network, ascending.
-  NetworkPart(const InterfaceNetwork& network, const std::vector<std::uint32_t>& triangles) {
-    for (const std::uint32_t t : triangles) {
-      for (const std::uint32_t p : network.triangles()[t]) points.push_back(p);
+/// The triangles of a network at the points [first, last), as a mesh with bodies in place of materials. Its
+/// points have the order that they have in the network.
+class NetworkPart {
+ public:
+  NetworkPart(const InterfaceNetwork& network, std::uint32_t first, std::uint32_t last)
+      : first_(first), last_(last) {
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t p = first; p < last; ++p) {
+      for (const std::uint32_t t : network.triangles_at(p)) {
+        const auto is_before = [&](std::uint32_t q) { return is_inside(q) && q < p; };
+        if (std::ranges::none_of(network.triangles()[t], is_before)) triangles.push_back(t);
+      }
     }
-    sort_unique(points);
-    for (const std::uint32_t p : points) mesh.points.push_back(network.points()[p]);
-    mesh.triangles.reserve(triangles.size());
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t p : network.triangles()[t]) {
+        if (!is_inside(p)) outside_.push_back(p);
+      }
+    }
+    sort_unique(outside_);
+    below_ = static_cast<std::uint32_t>(std::ranges::lower_bound(outside_, first) - outside_.begin());
+    add_points(network);
+    mesh_.triangles.reserve(triangles.size());
     for (const std::uint32_t t : triangles) {
       const auto& [front, back] = network.table().sides(network.interface_of(t));
       InterfaceTriangle triangle{network.triangles()[t], as_material(front), as_material(back)};
-      for (std::uint32_t& p : triangle.points)
-        p = static_cast<std::uint32_t>(std::ranges::lower_bound(points, p) - points.begin());
-      mesh.triangles.push_back(triangle);
+      for (std::uint32_t& p : triangle.points) p = number(p);
+      mesh_.triangles.push_back(triangle);
     }
   }
+
+  [[nodiscard]] InterfaceMesh& mesh() { return mesh_; }
+  /// Marks the points of the mesh that are those from the first to the last one.
+  [[nodiscard]] std::vector<char> inside() const {
+    std::vector<char> result(mesh_.points.size(), 0);
+    std::fill_n(result.begin() + below_, last_ - first_, char{1});
+    return result;
+  }
+
+ private:
+  [[nodiscard]] bool is_inside(std::uint32_t p) const { return first_ <= p && p < last_; }
+  /// Returns the number in the mesh of a point of the network.
+  [[nodiscard]] std::uint32_t number(std::uint32_t p) const {
+    if (is_inside(p)) return below_ + (p - first_);
+    const auto place = static_cast<std::uint32_t>(std::ranges::lower_bound(outside_, p) - outside_.begin());
+    return place < below_ ? place : place + (last_ - first_);
+  }
+  void add_points(const InterfaceNetwork& network) {
+    const auto points = network.points();
+    mesh_.points.reserve(outside_.size() + (last_ - first_));
+    for (std::size_t i = 0; i < below_; ++i) mesh_.points.push_back(points[outside_[i]]);
+    mesh_.points.insert(mesh_.points.end(), points.begin() + first_, points.begin() + last_);
+    for (std::size_t i = below_; i < outside_.size(); ++i) mesh_.points.push_back(points[outside_[i]]);
+  }
+
+  std::uint32_t first_, last_;
+  std::vector<std::uint32_t> outside_;  ///< the other points, ascending
+  std::uint32_t below_ = 0;             ///< how many of them come before the first one
+  InterfaceMesh mesh_;
 };
 
 /// Numbers the bodies that a mesh has in place of materials; returns them by their numbers.
 std::vector<MaterialId> number_bodies(InterfaceMesh& mesh) {
   std::vector<MaterialId> bodies;
-  for (const InterfaceTriangle& t : mesh.triangles) bodies.insert(bodies.end(), {t.front, t.back});
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    for (const MaterialId body : {t.front, t.back}) {
+      const std::size_t n = bodies.size();
+      if (n < 2 || (bodies[n - 1] != body && bodies[n - 2] != body)) bodies.push_back(body);
+    }
+  }
   sort_unique(bodies);
   for (InterfaceTriangle& t : mesh.triangles) {
     for (MaterialId* side : {&t.front, &t.back})
@@ -140,21 +181,12 @@ std::vector<MaterialId> number_bodies(InterfaceMesh& mesh) {
 /// Returns the parts of the Euler characteristics that belong to the points [first, last).
 std::vector<std::pair<BodyId, std::int64_t>> euler_at(const InterfaceNetwork& network, const Box3& domain,
                                                       std::size_t first, std::size_t last) {
-  std::vector<std::uint32_t> triangles;
-  for (std::size_t p = first; p < last; ++p) {
-    const auto at = network.triangles_at(static_cast<std::uint32_t>(p));
-    triangles.insert(triangles.end(), at.begin(), at.end());
-  }
-  sort_unique(triangles);
-  NetworkPart part(network, triangles);
-  std::vector<char> counts;
-  counts.reserve(part.points.size());
-  for (const std::uint32_t p : part.points) counts.push_back(first <= p && p < last ? 1 : 0);
-  const std::vector<MaterialId> bodies = number_bodies(part.mesh);
-  const EdgeFans fans(part.mesh, &domain);
+  NetworkPart part(network, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+  const std::vector<MaterialId> bodies = number_bodies(part.mesh());
+  const EdgeFans fans(part.mesh(), &domain);
   std::vector<std::pair<BodyId, std::int64_t>> found;
   for (const MaterialId body : bodies) found.emplace_back(body.value, 0);
-  EulerCounter(part.mesh, fans, std::move(counts)).count([&](BodyId number, std::int64_t by) {
+  EulerCounter(part.mesh(), fans, part.inside()).count([&](BodyId number, std::int64_t by) {
     found[number.value].second += by;
   });
   return found;
@@ -178,9 +210,8 @@ IdVector<BodyId, BodyTopology> body_topology(const InterfaceNetwork& network, co
                                              std::size_t points_at_once) {
   const std::size_t bodies = network.table().body_count();
   if (network.has_open_border() || network.inconsistencies() > 0) {
-    std::vector<std::uint32_t> all(network.triangles().size());
-    std::iota(all.begin(), all.end(), 0u);
-    return body_topology(std::move(NetworkPart(network, all).mesh), bodies, domain);
+    NetworkPart all(network, 0, static_cast<std::uint32_t>(network.points().size()));
+    return body_topology(std::move(all.mesh()), bodies, domain);
   }
   IdVector<BodyId, BodyTopology> result(bodies);
   const std::size_t points = network.points().size();

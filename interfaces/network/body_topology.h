@@ -20,6 +20,6 @@ IdVector<BodyId, BodyTopology> body_topology(InterfaceMesh mesh, std::size_t bod
 /// round `points_at_once` points need, for each thread, if the network is closed and oriented: each body is
 /// one piece then.
 IdVector<BodyId, BodyTopology> body_topology(const InterfaceNetwork& network, const Box3& domain,
-                                             std::size_t points_at_once = std::size_t{1} << 15);
+                                             std::size_t points_at_once = std::size_t{1} << 17);
 
 }  // namespace adamas::interfaces

@@ -376,6 +376,15 @@ std::vector<VertexId> BodyMending::vertices_of(const Distances& distances) {
   return vertices;
 }
 
+namespace {
+
+/// Returns whether moves are of no use that leave this many of the places that were torn.
+bool is_hopeless(std::size_t left, std::size_t torn_first) {
+  return static_cast<double>(left) > kHopelessPart * static_cast<double>(torn_first);
+}
+
+}  // namespace
+
 /// Moves the signed distances at the corners of cells that give places within wrong bodies to others, by at
 /// most a part of the interface error, until they no longer do so. Returns the original values of the moved
 /// distances; none if that is hopeless, and nothing is moved then.
@@ -401,6 +410,11 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
     }
     moves = collect_at<InterfaceMove>(again ? torn : all, move);
     if (pass == 0) torn_first = moves.size();
+    // Where the first moves leave many places torn, they tear even more of the others.
+    if (pass == 1 && is_hopeless(moves.size(), torn_first)) {
+      torn_last = moves.size();
+      break;
+    }
     const bool any = apply(moves, originals);
     if (!any && !again) {
       torn_last = moves.size();
@@ -410,7 +424,7 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   }
   // Moves tear other places. Bodies would tell as much, but what leaves show would have to be found for them.
   if (!torn_last) torn_last = collect_at<InterfaceMove>(all, move).size();
-  moving_is_hopeless_ = static_cast<double>(*torn_last) > kHopelessPart * static_cast<double>(torn_first);
+  moving_is_hopeless_ = is_hopeless(*torn_last, torn_first);
   if (moving_is_hopeless_) restore(std::exchange(originals, {}));
   return originals;
 }
