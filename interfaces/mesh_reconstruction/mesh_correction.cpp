@@ -601,14 +601,26 @@ class Correction {
   MeshAgreement agreement_;
 };
 
-/// Makes materials sharp that have at most half of every cell; blurred, they would own nothing.
+/// Makes materials sharp that have at most half of every cell, as a thin film: blurred, they would own
+/// nothing. So are those with no other steps than round such ones that are the only other material there.
 void set_faint_sharp(const MeshValues& values, std::vector<double>& widths) {
   std::vector<float> most(widths.size(), 0);
   for (const Index c : values.active_cells()) {
     for (const Entry& entry : values.at(c))
       most[entry.material] = std::max(most[entry.material], entry.fraction);
   }
-  for (std::size_t n = 0; n < widths.size(); ++n) widths[n] = most[n] <= 0.5f ? 0 : widths[n];
+  const auto is_faint = [&](const Entry& entry) {
+    return entry.fraction > 0 && most[entry.material] <= 0.5f;
+  };
+  std::vector<char> has_own_step(widths.size(), 0);
+  for (const Index c : values.active_cells()) {
+    if (values.at(c).size() == 2 && std::ranges::any_of(values.at(c), is_faint)) continue;
+    for (const Entry& entry : values.at(c)) {
+      if (entry.fraction > 0 && entry.fraction < 1) has_own_step[entry.material] = 1;
+    }
+  }
+  for (std::size_t n = 0; n < widths.size(); ++n)
+    widths[n] = most[n] > 0.5f && has_own_step[n] != 0 ? widths[n] : 0;
 }
 
 }  // namespace

@@ -29,6 +29,11 @@ constexpr int kMostHalvings = 4;
 /// The damping of a value in extents of its cell: gains that need larger moves would make the surface rough.
 /// It rises where moves go too far, and falls again (Levenberg 1944 and Marquardt 1963).
 constexpr double kLeastDamping = 1e-3, kMostDamping = 1, kDampingFalls = 0.6, kDampingRises = 4;
+/// Materials without a surface in a cell of which they fill more than kMuch are raised in at most so many
+/// sweeps, each time by as much as a plane would move that had their volume, in cells of this derivative of
+/// volume by extent, or less.
+constexpr int kMostSweeps = 12;
+constexpr double kMuch = 0.03, kLeastGrowth = 0.5, kMostRaise = 0.2;
 /// For damping, extents are at least this part of the greatest one.
 constexpr double kLeastExtent = 1e-6;
 
@@ -52,6 +57,7 @@ class Fit {
   void run(Progress& progress) {
     const LoopProgress loops(progress);
     linearise();
+    for (int sweep = 0; sweep < kMostSweeps && raise_absent(); ++sweep) linearise();
     double cost = system_.cost(), damping = kLeastDamping;
     for (int round = 0; round < kMostRounds; ++round) {
       progress.step("correcting volumes", static_cast<double>(round) / kMostRounds);
@@ -72,6 +78,22 @@ class Fit {
   [[nodiscard]] bool is_good() const {
     return static_cast<double>(system_.cells_off()) <= kMostOff * static_cast<double>(mixed_) &&
            std::ranges::all_of(system_.missing, [](double missing) { return std::abs(missing) <= kFarOff; });
+  }
+
+  /// Raises values of materials that have no surface in a cell which holds much of them, as in a film, so
+  /// that their volumes there do not depend on any value. Returns whether there are such.
+  bool raise_absent() {
+    bool any = false;
+    for (std::size_t n = 0; n < values_.active_cells().size(); ++n) {
+      const std::span<Entry> own = values_.at(values_.active_cells()[n]);
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        if (!(own[e].fraction > kMuch) || volumes_.parts(n)[e] > 0) continue;
+        own[e].value += std::min(static_cast<double>(own[e].fraction) / kLeastGrowth, kMostRaise) *
+                        extents_[first_rows_[n] + e];
+        any = true;
+      }
+    }
+    return any;
   }
 
   /// Moves values, and halves the move until the cost is less than it was. Returns how often; after more than
