@@ -112,7 +112,7 @@ class Diffusion {
     for (const Index f : mesh.faces_of_cell(c)) {
       const Index other = mesh.neighbour(c, f);
       if (other != PolyhedralMesh::kNone && walls_.fills(other)) continue;
-      const Vec3 area = face_area(f);
+      const Vec3 area = mesh.face_area(f);
       if (other == PolyhedralMesh::kNone) {
         open += area;
         continue;
@@ -126,17 +126,6 @@ class Diffusion {
     return rate;
   }
 
-  /// The area of a face as a vector that points out of its first cell.
-  [[nodiscard]] Vec3 face_area(Index f) const {
-    const PolyhedralMesh& mesh = values_.subdivision().mesh();
-    const std::span<const Index> points = mesh.face(f);
-    const Vec3 center = mesh.face_center(f);
-    Vec3 sum;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      sum += 0.5 * cross(mesh.points()[points[i]] - center,
-                         mesh.points()[points[(i + 1) % points.size()]] - center);
-    return sum;
-  }
   /// Adds the flux through the boundary of a cell, by the gradient that the cells round it have by least
   /// squares. `open`: the area of that boundary in relation to the cell's volume.
   void add_boundary(Index c, const Vec3& open) {
