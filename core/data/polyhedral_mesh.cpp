@@ -133,6 +133,15 @@ Vec3 PolyhedralMesh::face_center(std::size_t f) const {
   return (1.0 / static_cast<double>(face(f).size())) * sum;
 }
 
+Vec3 PolyhedralMesh::face_area(std::size_t f) const {
+  const std::span<const Index> points = face(f);
+  const Vec3 center = face_center(f);
+  Vec3 sum;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    sum += 0.5 * cross(points_[points[i]] - center, points_[points[(i + 1) % points.size()]] - center);
+  return sum;
+}
+
 /// Returns the volume of the tetrahedra from the centre of a cell to the triangles of a face as it is stored.
 double PolyhedralMesh::volume_below(std::size_t cell, std::size_t f) const {
   const std::span<const Index> own = face(f);

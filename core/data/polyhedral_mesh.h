@@ -49,6 +49,8 @@ class PolyhedralMesh {
 
   /// The mean of a face's points.
   [[nodiscard]] Vec3 face_center(std::size_t f) const;
+  /// The area of a face as a vector that points out of its first cell: the sum of those of its triangles.
+  [[nodiscard]] Vec3 face_area(std::size_t f) const;
   /// The mean of a cell's points, from which tetrahedra to the triangles of its faces fill it.
   [[nodiscard]] Vec3 cell_center(std::size_t c) const { return cell_centers_[c]; }
   /// The volume of a cell: the sum of those of its tetrahedra, which is exact for faces as they are defined

@@ -284,9 +284,9 @@ class SliceReader {
     return pixels;
   }
 
-  /// Calls `use` with the number and the scaled value of each pixel of a slice.
+  /// Calls `use` with the number of each pixel of a slice and what is stored there.
   template <class Use>
-  void for_each_pixel(const Slice& slice, const Use& use) const {
+  void for_each_stored(const Slice& slice, const Use& use) const {
     const std::size_t count = size_[0] * size_[1];
     const char* bytes = slice.pixels->bytes.data();
     if (!slice.pixels->type) {
@@ -299,9 +299,18 @@ class SliceReader {
     visit_stored_type(*slice.pixels->type, [&]<class Stored>(Stored stored) {
       for (std::size_t i = 0; i < count; ++i) {
         std::memcpy(&stored, bytes + (slice.first + i) * sizeof(Stored), sizeof(Stored));
-        use(i, slice.frame.slope * static_cast<double>(stored) + slice.frame.intercept);
+        use(i, static_cast<double>(stored));
       }
     });
+  }
+
+  /// Calls `use` with the number of each pixel of a slice and its scaled value.
+  template <class Use>
+  void for_each_pixel(const Slice& slice, const Use& use) const {
+    // Single bits are never scaled.
+    const double slope = slice.pixels->type ? slice.frame.slope : 1,
+                 intercept = slice.pixels->type ? slice.frame.intercept : 0;
+    for_each_stored(slice, [&](std::size_t i, double stored) { use(i, slope * stored + intercept); });
   }
 
   void take_segments(const gdcm::DataSet& header) {
@@ -362,42 +371,75 @@ class SliceReader {
     if (most - least > 1e-2 * most) file.remark = fmt::format("slices are {:g} to {:g} apart", least, most);
   }
 
-  void add_values(GridFile& file) {
-    GridArray array;
-    array.name = name_;
+  /// The range of numbers, and whether they are all whole.
+  struct Range {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     bool whole = true;
-    for (const Slice& slice : slices_) {
-      for_each_pixel(slice, [&](std::size_t, double value) {
-        least = std::min(least, value);
-        most = std::max(most, value);
-        whole = whole && value == std::round(value);
-      });
+    void add(double number) {
+      least = std::min(least, number);
+      most = std::max(most, number);
+      whole = whole && number == std::round(number);
     }
-    array.type = whole ? type_of(least, most) : "float32";
-    array.type == "float32" ? move_values<float>(array) : move_values<std::int32_t>(array);
+    /// The smallest type that has all whole numbers of the range; none if there is none.
+    [[nodiscard]] std::optional<StoredType> type() const {
+      constexpr double kBeyond = 9007199254740992.0;  // beyond this, a double has gaps between whole numbers
+      if (!whole) return {};
+      if (least >= 0 && most <= 255) return StoredType::kUint8;
+      if (least >= 0 && most <= 65535) return StoredType::kUint16;
+      if (least >= -32768 && most <= 32767) return StoredType::kInt16;
+      if (least >= -2147483648.0 && most <= 2147483647.0) return StoredType::kInt32;
+      if (least >= 0 && most <= 4294967295.0) return StoredType::kUint32;
+      if (least >= -kBeyond && most <= kBeyond) return StoredType::kInt64;
+      return {};
+    }
+  };
+
+  /// Adds the values of all slices: whole ones as such, and whole numbers of which one scale makes broken
+  /// ones with the scale.
+  void add_values(GridFile& file) {
+    Range values, stored;
+    const Frame& first = slices_.front().frame;
+    bool one_scale = true, fit_floats = true;
+    for (const Slice& slice : slices_) {
+      one_scale = one_scale && slice.frame.slope == first.slope && slice.frame.intercept == first.intercept;
+      for_each_stored(slice, [&](std::size_t, double number) { stored.add(number); });
+      for_each_pixel(slice, [&](std::size_t, double value) { values.add(value); });
+      // A float has room for what two bytes tell.
+      const std::optional<StoredType> type = slice.pixels->type;
+      fit_floats = fit_floats && (!type || *type == StoredType::kFloat32 || stored_bytes(*type) <= 2);
+    }
+    GridArray array;
+    array.name = name_;
+    std::optional<StoredType> type = values.type();
+    const bool has_scale =
+        one_scale && first.slope != 0 && std::isfinite(first.slope) && std::isfinite(first.intercept);
+    if (!type && has_scale && stored.type()) {
+      type = stored.type();
+      array.slope = first.slope;
+      array.intercept = first.intercept;
+    }
+    array.type = stored_name(type.value_or(fit_floats ? StoredType::kFloat32 : StoredType::kFloat64));
+    if (!type) {
+      fit_floats ? move_values<float>(array) : move_values<double>(array);
+    } else if (*type == StoredType::kUint32 || *type == StoredType::kInt64) {
+      move_values<std::int64_t>(array);
+    } else {
+      move_values<std::int32_t>(array);
+    }
     file.arrays.push_back(std::move(array));
   }
 
-  /// Moves the values of all slices into an array.
+  /// Moves the values of all slices into an array, or what is stored if the array has a scale.
   template <class Number>
   void move_values(GridArray& array) {
     std::vector<Number> numbers;
     numbers.reserve(size_[0] * size_[1] * slices_.size());
+    const auto add = [&](std::size_t, double value) { numbers.push_back(static_cast<Number>(value)); };
     for (Slice& slice : slices_) {
-      for_each_pixel(slice,
-                     [&](std::size_t, double value) { numbers.push_back(static_cast<Number>(value)); });
+      array.scaled() ? for_each_stored(slice, add) : for_each_pixel(slice, add);
       slice.pixels.reset();
     }
     array.values = std::move(numbers);
-  }
-
-  /// The smallest type of samples that has all whole numbers of a range.
-  static const char* type_of(double least, double most) {
-    if (least >= 0 && most <= 255) return "uint8";
-    if (least >= 0 && most <= 65535) return "uint16";
-    if (least >= -32768 && most <= 32767) return "int16";
-    return least >= -2147483648.0 && most <= 2147483647.0 ? "int32" : "float32";
   }
 
   /// The number of a slice's place.

@@ -8,6 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/text.h"
+#include "adamas/volume.h"
+
 namespace adamas::io {
 
 /// Parses numbers separated by blanks, as "1 2.5 -3"; empty if there is anything else.
@@ -25,6 +28,13 @@ std::optional<std::vector<T>> parse_number_list(std::string_view text) {
     numbers.push_back(value);
     text.remove_prefix(word.size());
   }
+}
+
+/// A unit as VolumeGrid may have it; empty for others.
+inline std::string unit_of(std::string_view text) {
+  std::string unit = visible_text(text);
+  const bool kept = unit.size() <= VolumeGrid::kLongestUnit && unit.find('"') == std::string::npos;
+  return kept ? unit : std::string();
 }
 
 /// The beginning of a file's text in a form for messages: one line of at most `most` characters.

@@ -358,19 +358,12 @@ class Parser {
     } else if (field == "space units" || field == "units") {
       read_units(value);
     } else if (field == "sample units" || field == "sampleunits") {
-      header_.value_unit = unit_of(value);
+      header_.value_unit = unit_of(trimmed(value, kBlanks));
     } else if (field == "space origin") {
       places_.origin = split(value, " \t(),");
     } else if (field == "space directions") {
       read_directions(value);
     }
-  }
-
-  /// A unit as VolumeGrid may have it; empty for others.
-  static std::string unit_of(std::string_view text) {
-    const std::string unit = visible_text(trimmed(text, kBlanks));
-    const bool kept = unit.size() <= VolumeGrid::kLongestUnit && unit.find('"') == std::string::npos;
-    return kept ? unit : std::string();
   }
 
   /// Reads the units of axes, each in quotes; axes that are none of space have none, or a mark of it. Axes of
@@ -381,7 +374,7 @@ class Parser {
     for (std::size_t at = value.find('"'); at != std::string_view::npos; at = value.find('"', at)) {
       const std::size_t end = value.find('"', at + 1);
       if (end == std::string_view::npos) return;
-      const std::string unit = unit_of(value.substr(at + 1, end - at - 1));
+      const std::string unit = unit_of(trimmed(value.substr(at + 1, end - at - 1), kBlanks));
       at = end + 1;
       if (unit.empty() || unit == "???" || unit == "none") continue;
       same = same && (common.empty() || common == unit);

@@ -93,7 +93,7 @@ void set_directions(const GridAxes& axes, ImportedVolume& volume) {
 StoredType kept_type(const GridArray& array) {
   const auto type = find_stored_type(array.type);
   if (type == StoredType::kFloat64) return *type;
-  return array.integral() && type ? *type : StoredType::kFloat32;
+  return !array.has_fractions() && type ? *type : StoredType::kFloat32;
 }
 
 void send(const GridArray& array, StoredType type, ImportSink& sink) {
@@ -125,6 +125,8 @@ void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
   set_places(name, file, volume);
   if (file.aslant) set_directions(*file.aslant, volume);
   volume.stored = kept_type(array);
+  volume.slope = array.slope;
+  volume.intercept = array.intercept;
   const auto& n = volume.dimensions;
   if (array.size() != n[0] * n[1] * n[2]) {
     fail("{}: array '{}': expected {} values, found {}", name, array.name, n[0] * n[1] * n[2], array.size());

@@ -14,6 +14,8 @@ inline constexpr auto kSentMembers<GridArray> = std::tuple{&GridArray::name,
                                                            &GridArray::components,
                                                            &GridArray::component_names,
                                                            &GridArray::values,
+                                                           &GridArray::slope,
+                                                           &GridArray::intercept,
                                                            &GridArray::label_names};
 template <>
 inline constexpr auto kSentMembers<GridFile> =

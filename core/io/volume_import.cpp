@@ -25,6 +25,9 @@ VolumeSource checked_source(const ReaderRequest& request, const ImportedVolume& 
   source.name = name;
   if (volume.stored > StoredType::kFloat64) fail("{}: expected a type of numbers, found none", name);
   source.set_stored(volume.stored);
+  source.slope = volume.slope;
+  source.intercept = volume.intercept;
+  if (source.scaled()) source.grid.type = SampleType::kFloat32;
   source.grid.dimensions = volume.dimensions;
   source.grid.spacing = volume.spacing;
   source.grid.origin = volume.origin;

@@ -19,6 +19,7 @@ namespace adamas::io {
 struct ImportedVolume {
   std::array<std::uint64_t, 3> dimensions{};
   StoredType stored = StoredType::kUint8;
+  double slope = 1, intercept = 0;  ///< as in VolumeSource
   Vec3 spacing{1, 1, 1};
   Vec3 origin;
   std::array<Vec3, 3> directions = VolumeGrid::kStraight;

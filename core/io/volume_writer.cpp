@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -18,6 +19,7 @@
 #include "core/data/stored_type.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
+#include "core/io/vti_header.h"
 #include "core/io/xml_file.h"
 
 namespace adamas::io {
@@ -102,6 +104,22 @@ std::string meta_image_header_text(VolumeGrid grid, StoredType type, const std::
       sizes(grid), stored_name(type, TypeNames::kMetaImage), data_name.empty() ? "LOCAL" : data_name);
 }
 
+/// What a .vti has no words for, as arrays of its field data, which VTK keeps; empty where there is nothing.
+std::string vti_field_data(const VolumeGrid& grid) {
+  std::string arrays;
+  for (const auto& [name, text] :
+       {std::pair(kVtiLengthUnit, grid.length_unit), std::pair(kVtiValueUnit, grid.value_unit),
+        std::pair(kVtiSpace, grid.space)}) {
+    if (text.empty()) continue;
+    std::string codes;
+    for (const char c : text) codes += fmt::format("{} ", static_cast<unsigned char>(c));
+    arrays += fmt::format(
+        "      <Array type=\"String\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}0</Array>\n", name,
+        codes);
+  }
+  return arrays.empty() ? "" : "    <FieldData>\n" + arrays + "    </FieldData>\n";
+}
+
 /// The text before the samples of a .vti; vti_count() has to precede each array. Throws Error with `name` if
 /// there are too many samples along an axis.
 std::string vti_header_text(const std::string& name, const VolumeGrid& grid, StoredType type,
@@ -134,13 +152,13 @@ std::string vti_header_text(const std::string& name, const VolumeGrid& grid, Sto
   return fmt::format(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-      "  <ImageData WholeExtent=\"{0}\" Origin=\"{1}\" Spacing=\"{2}\"{5}>\n"
+      "  <ImageData WholeExtent=\"{0}\" Origin=\"{1}\" Spacing=\"{2}\"{5}>\n{6}"
       "    <Piece Extent=\"{0}\">\n"
       "      <PointData Scalars=\"{3}\">\n"
       "{4}      </PointData>\n      <CellData/>\n    </Piece>\n  </ImageData>\n"
       "  <AppendedData encoding=\"raw\">\n   _",
       extent, numbers(grid.origin), numbers(grid.spacing), xml_attribute(arrays.front().name), declared,
-      direction);
+      direction, vti_field_data(grid));
 }
 
 /// The number that precedes an array of a .vti: the size of the array in bytes.
@@ -185,10 +203,15 @@ std::filesystem::path volume_data_file(const std::filesystem::path& path) {
 
 namespace {
 
+/// Whether a format tells units and spaces of any name.
+bool has_words(const std::string& extension) {
+  return extension == ".nrrd" || extension == ".nhdr" || extension == ".vti" || extension == ".pvd";
+}
+
 /// What a format cannot tell of the units; empty where it tells them. MetaImages are in millimetres, and raw
 /// samples have no lengths.
 std::string lost_units(const std::string& extension, const VolumeGrid& grid) {
-  if (extension == ".nrrd" || extension == ".nhdr") return {};
+  if (has_words(extension)) return {};
   const std::string& unit = grid.length_unit;
   const bool is_meta_image = extension == ".mha" || extension == ".mhd";
   const bool tells =
@@ -210,8 +233,7 @@ std::string lost_axes(const std::string& extension, const VolumeGrid& grid) {
     return fmt::format("the space of coordinates is {}: NIfTI takes them for RAS",
                        grid.space.empty() ? "not known" : grid.space);
   }
-  if (grid.space.empty() || extension == ".nrrd" || extension == ".nhdr") return {};
-  if (anatomical && extension != ".vti" && extension != ".pvd") return {};
+  if (grid.space.empty() || anatomical || has_words(extension)) return {};
   return fmt::format("coordinates are {}, which the file does not say", grid.space);
 }
 

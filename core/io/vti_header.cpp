@@ -1,11 +1,17 @@
 #include "core/io/vti_header.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "adamas/text.h"
+#include "core/data/anatomical_space.h"
 #include "core/io/header_text.h"
 #include "core/io/input_formats.h"
+#include "core/io/text_array.h"
 #include "core/io/volume_import.h"
 #include "core/io/vtk_checks.h"
 #include "core/io/vtk_xml_array.h"
@@ -44,6 +50,9 @@ class Parser {
     for (ImageArray& array : header_.arrays) note_missing(array);
     if (names_ && names_->source.header_bytes > 0 && form_.empty()) header_.material_names = names_->source;
     if (kind_.tag == kRectilinear.tag) read_nodes();
+    header_.length_unit = unit_of(text_of(kVtiLengthUnit));
+    header_.value_unit = unit_of(text_of(kVtiValueUnit));
+    if (const std::string space = text_of(kVtiSpace); is_space(space)) header_.space = space;
     return std::move(header_);
   }
 
@@ -114,6 +123,8 @@ class Parser {
     const bool text = tag.value("type") == "String";
     if (parent_ == "FieldData") {
       if (text && name == "material_names" && !names_) names_ = arrays_.array_of(tag);
+      if (text && (name == kVtiLengthUnit || name == kVtiValueUnit || name == kVtiSpace))
+        texts_.emplace(name, arrays_.array_of(tag).source);
       return;
     }
     if (parent_ == "Coordinates") {
@@ -140,6 +151,15 @@ class Parser {
     for (ImageArray& array : header_.arrays) arrays_.find_appended(tag, array.source);
     for (ImageArray& array : coordinates_) arrays_.find_appended(tag, array.source);
     if (names_) arrays_.find_appended(tag, names_->source);
+    for (auto& each : texts_) arrays_.find_appended(tag, each.second);
+  }
+
+  /// The one text of an array of field data; empty where there is none.
+  [[nodiscard]] std::string text_of(const char* name) const {
+    const auto found = texts_.find(name);
+    if (found == texts_.end() || found->second.header_bytes == 0 || !form_.empty()) return {};
+    const std::vector<std::string> texts = read_texts(found->second);
+    return texts.size() == 1 ? visible_text(texts.front()) : std::string();
   }
 
   /// Reads positions along the axes.
@@ -179,7 +199,8 @@ class Parser {
   std::string form_;    ///< why nothing can be read here, as ImageArray::missing
   std::string parent_;  ///< PointData, CellData, FieldData or Coordinates while it is open
   std::vector<std::int64_t> extent_;
-  std::optional<ImageArray> names_;  ///< the texts of the array material_names
+  std::optional<ImageArray> names_;                         ///< the texts of the array material_names
+  std::map<std::string, VolumeSource, std::less<>> texts_;  ///< of field data: units and the space
   std::vector<ImageArray> coordinates_;
   bool has_grid_ = false, has_piece_ = false;
 };

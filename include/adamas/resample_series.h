@@ -8,6 +8,7 @@
 
 #include "adamas/export.h"
 #include "adamas/geometry.h"
+#include "adamas/material_colours.h"
 #include "adamas/output_set.h"
 #include "adamas/probe.h"
 #include "adamas/progress.h"
@@ -74,14 +75,16 @@ struct ResampledSeries {
   std::string density;             ///< the field whose integral is mass; empty: there is none
   std::vector<ResampledStep> steps;
   std::vector<LeftOutStep> left_out;
+  MaterialColours colours;  ///< those that files of steps have for materials, the first one that has any
 };
 
 /// Resamples the steps of a series of data on one grid, each from the mesh of the step before, which takes
-/// less time and gives the same meshes as single runs. Declares the meshes and the film and writes them into
-/// `outputs`, which the caller commits; the steps' files are protected from being overwritten. Steps that
-/// are damaged are left out. Notes begin with the step's file. Throws Error as read_input() and resample()
-/// do, where a step has another grid, other materials or other fields than the first one, and where no step
-/// can be read; Error (kUsage) for options that do not go together.
+/// less time and gives the same meshes as single runs. Colours of materials that a step's files have are
+/// those of that step and all later ones, in meshes, film and curves. Declares the meshes and the film and
+/// writes them into `outputs`, which the caller commits; the steps' files are protected from being
+/// overwritten. Steps that are damaged are left out. Notes begin with the step's file. Throws Error as
+/// read_input() and resample() do, where a step has another grid, other materials or other fields than the
+/// first one, and where no step can be read; Error (kUsage) for options that do not go together.
 ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
                                 OutputSet& outputs, Progress& progress = SilentProgress::instance());
 

@@ -16,7 +16,9 @@
 #include "core/base/sort_unique.h"
 #include "interfaces/mesh_reconstruction/mesh_dispersed.h"
 #include "interfaces/mesh_reconstruction/mesh_errors.h"
+#include "interfaces/mesh_reconstruction/mesh_fit.h"
 #include "interfaces/mesh_reconstruction/mesh_start.h"
+#include "interfaces/mesh_reconstruction/mesh_volumes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_values.h"
 
@@ -27,11 +29,6 @@ namespace {
 using Index = MeshSubdivision::Index;
 using Entry = MeshValues::Entry;
 
-/// Sharp fractions are corrected in at most so many rounds, until no cell is off by more than kEnough.
-constexpr int kMostRounds = 40;
-constexpr double kEnough = 2e-4;
-/// Rounds end where the differences fall to no less than this part of those of the round before.
-constexpr double kSlow = 0.97;
 /// Blurred fractions are corrected in so many rounds: more would fit noise.
 constexpr int kRoundsBlurred = 3;
 /// A value moves by at most this part of a cell's size in a round.
@@ -115,7 +112,7 @@ class Diffusion {
     for (const Index f : mesh.faces_of_cell(c)) {
       const Index other = mesh.neighbour(c, f);
       if (other != PolyhedralMesh::kNone && walls_.fills(other)) continue;
-      const Vec3 area = face_area(f);
+      const Vec3 area = mesh.face_area(f);
       if (other == PolyhedralMesh::kNone) {
         open += area;
         continue;
@@ -129,17 +126,6 @@ class Diffusion {
     return rate;
   }
 
-  /// The area of a face as a vector that points out of its first cell.
-  [[nodiscard]] Vec3 face_area(Index f) const {
-    const PolyhedralMesh& mesh = values_.subdivision().mesh();
-    const std::span<const Index> points = mesh.face(f);
-    const Vec3 center = mesh.face_center(f);
-    Vec3 sum;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      sum += 0.5 * cross(mesh.points()[points[i]] - center,
-                         mesh.points()[points[(i + 1) % points.size()]] - center);
-    return sum;
-  }
   /// Adds the flux through the boundary of a cell, by the gradient that the cells round it have by least
   /// squares. `open`: the area of that boundary in relation to the cell's volume.
   void add_boundary(Index c, const Vec3& open) {
@@ -271,36 +257,36 @@ class Correction {
     for (double& width : widths_) width = std::max(width, kUniformDeviation);
   }
 
-  /// Corrects values in rounds.
+  /// Corrects values: those of sharp fractions alone until cells hold them, others in rounds.
   void correct() {
     blurs_.clear();
     diffusion_.reset();
     if (values_.active_cells().empty()) return;
-    const std::vector<double>& widths = widths_;
-    const bool blurred = std::ranges::any_of(widths, [](double width) { return width > 0; });
-    if (blurred) {
-      // The cells themselves are a part of the width.
-      for (const double width : widths)
-        blurs_.push_back(std::sqrt(std::max(0.0, width * width - kCellVariance)));
-      std::vector<double> lengths;
-      for (const Index c : values_.active_cells()) {
-        for (const Entry& entry : std::as_const(values_).at(c))
-          lengths.push_back(blurs_[entry.material] * extents_[lengths.size()]);
-      }
-      diffusion_.emplace(values_, walls_, std::move(lengths));
+    if (std::ranges::any_of(widths_, [](double width) { return width > 0; })) return correct_blurred();
+    fit_volumes(extents_, values_, volumes_, progress_);
+    measure(false);
+  }
+
+  void correct_blurred() {
+    // The cells themselves are a part of the width.
+    for (const double width : widths_)
+      blurs_.push_back(std::sqrt(std::max(0.0, width * width - kCellVariance)));
+    std::vector<double> lengths;
+    for (const Index c : values_.active_cells()) {
+      for (const Entry& entry : std::as_const(values_).at(c))
+        lengths.push_back(blurs_[entry.material] * extents_[lengths.size()]);
     }
-    const int most = blurred ? kRoundsBlurred : kMostRounds;
+    diffusion_.emplace(values_, walls_, std::move(lengths));
     double before = std::numeric_limits<double>::infinity();
     std::vector<double> best;
-    for (int round = 0; round <= most; ++round) {
-      progress_.step("correcting volumes", static_cast<double>(round) / most);
+    for (int round = 0; round <= kRoundsBlurred; ++round) {
+      progress_.step("correcting volumes", static_cast<double>(round) / kRoundsBlurred);
       measure(true);
       if (agreement_.cells.mean_difference >= before) {
         restore(best);
         return measure(false);
       }
-      if (agreement_.cells.greatest_difference <= kEnough || round == most) return;
-      if (!blurred && agreement_.cells.mean_difference > kSlow * before) return;
+      if (round == kRoundsBlurred) return;
       before = agreement_.cells.mean_difference;
       best = kept();
       move();
@@ -384,7 +370,7 @@ class Correction {
     }
   }
 
-  /// Moves values towards what the differences ask for.
+  /// Moves values towards what the differences ask for, where some are blurred.
   void move() {
     const std::vector<Index>& active = values_.active_cells();
     std::vector<double> moves;
@@ -401,15 +387,13 @@ class Correction {
         moves.push_back(std::clamp(by, -kMostMove * extent, kMostMove * extent));
       }
     }
-    if (diffusion_) {
-      errors_->take_means(moves);
-      continue_moves(moves);
-    }
+    errors_->take_means(moves);
+    continue_moves(moves);
     at = 0;
     for (const Index c : active) {
       for (Entry& entry : values_.at(c)) entry.value += moves[at++];
     }
-    if (diffusion_) walls_.set_values(values_);
+    walls_.set_values(values_);
   }
 
   /// Replaces the moves of blurred materials near the boundary, beyond which nobody knows what blurred
@@ -548,7 +532,8 @@ class Correction {
         const double volume = mesh.cell_volume(active[n]);
         const std::span<const Entry> own = std::as_const(values_).at(active[n]);
         for (std::size_t e = 0; e < own.size(); ++e) owned[own[e].material] += volume * volumes_.parts(n)[e];
-        for (const auto& [a, b, growth] : volumes_.exchanges(n)) exchanged[{a, b}] += volume * growth;
+        for (const auto& exchange : volumes_.exchanges(n))
+          exchanged[{exchange.first, exchange.second}] += volume * exchange.growth;
       }
       // The unknowns are the offsets of materials that have interfaces.
       std::vector<int> unknown(count, -1);
@@ -605,84 +590,29 @@ class Correction {
   MeshAgreement agreement_;
 };
 
-/// Makes materials sharp that have at most half of every cell; blurred, they would own nothing.
+/// Makes materials sharp that have at most half of every cell, as a thin film: blurred, they would own
+/// nothing. So are those with no other steps than round such ones that are the only other material there.
 void set_faint_sharp(const MeshValues& values, std::vector<double>& widths) {
   std::vector<float> most(widths.size(), 0);
   for (const Index c : values.active_cells()) {
     for (const Entry& entry : values.at(c))
       most[entry.material] = std::max(most[entry.material], entry.fraction);
   }
-  for (std::size_t n = 0; n < widths.size(); ++n) widths[n] = most[n] <= 0.5f ? 0 : widths[n];
+  const auto is_faint = [&](const Entry& entry) {
+    return entry.fraction > 0 && most[entry.material] <= 0.5f;
+  };
+  std::vector<char> has_own_step(widths.size(), 0);
+  for (const Index c : values.active_cells()) {
+    if (values.at(c).size() == 2 && std::ranges::any_of(values.at(c), is_faint)) continue;
+    for (const Entry& entry : values.at(c)) {
+      if (entry.fraction > 0 && entry.fraction < 1) has_own_step[entry.material] = 1;
+    }
+  }
+  for (std::size_t n = 0; n < widths.size(); ++n)
+    widths[n] = most[n] > 0.5f && has_own_step[n] != 0 ? widths[n] : 0;
 }
 
 }  // namespace
-
-MeshVolumes::MeshVolumes(const MeshValues& values) : values_(values) {
-  first_.push_back(0);
-  for (const Index c : values.active_cells()) first_.push_back(first_.back() + values.at(c).size());
-  parts_.resize(first_.back());
-  growths_.resize(first_.back());
-  exchanges_.resize(values.active_cells().size());
-}
-
-void MeshVolumes::measure(bool growth) {
-  parallel_for(exchanges_.size(), 32, [&](std::size_t n) { measure_cell(n, growth); });
-}
-
-void MeshVolumes::measure_cell(std::size_t n, bool growth) {
-  thread_local std::vector<CornerValues> found;
-  thread_local TetrahedronShares shares;
-  const Index cell = values_.active_cells()[n];
-  const MeshSubdivision& subdivision = values_.subdivision();
-  const std::span<const Entry> own = values_.at(cell);
-  const std::span<double> parts = std::span(parts_).subspan(first_[n], own.size()),
-                          growths = std::span(growths_).subspan(first_[n], own.size());
-  std::ranges::fill(parts, 0);
-  std::ranges::fill(growths, 0);
-  exchanges_[n].clear();
-  const auto place = [&](std::uint16_t number) {
-    return static_cast<std::size_t>(std::ranges::find(own, number, &Entry::material) - own.begin());
-  };
-  if (!(subdivision.mesh().cell_volume(cell) > 0)) {
-    // A tangled cell is left as it is.
-    for (std::size_t e = 0; e < own.size(); ++e) parts[e] = static_cast<double>(own[e].fraction);
-    return;
-  }
-  if (const auto sole = values_.sole_owner(cell)) {
-    parts[place(*sole)] = 1;
-    return;
-  }
-  const double unit = 1 / subdivision.mesh().cell_volume(cell);
-  subdivision.for_each_tetrahedron(cell, [&](const std::array<Index, 4>& corners) {
-    const double volume = unit * subdivision.volume(corners);
-    const std::uint16_t first = values_.owner(corners[0]);
-    if (std::all_of(corners.begin() + 1, corners.end(), [&](Index p) { return values_.owner(p) == first; })) {
-      parts[place(first)] += volume;
-      return;
-    }
-    values_.find_materials(corners, found);
-    shares.divide(
-        found, growth,
-        [&](std::uint16_t number, double part) {
-          const std::size_t e = place(number);
-          if (e < own.size()) parts[e] += volume * part;
-        },
-        [&](const CornerValues& a, const CornerValues& b, const std::array<double, 4>& by) {
-          const double sum = volume * (by[0] + by[1] + by[2] + by[3]);
-          if (sum == 0) return;
-          const std::size_t e = place(a.number), f = place(b.number);
-          if (e < own.size()) growths[e] += sum;
-          if (f < own.size()) growths[f] += sum;
-          auto known = std::ranges::find_if(
-              exchanges_[n], [&](const Exchange& x) { return x.first == a.number && x.second == b.number; });
-          if (known == exchanges_[n].end()) {
-            exchanges_[n].push_back({a.number, b.number, sum});
-          } else {
-            known->growth += sum;
-          }
-        });
-  });
-}
 
 MeshAgreement correct_values(const MeshData& data, const FractionOptions& options, MeshValues& values,
                              Progress& progress) {

@@ -28,13 +28,7 @@ bool is_mixed(const Entry& entry) { return entry.fraction > 0 && entry.fraction 
 /// too.
 double inner_diameter(const PolyhedralMesh& mesh, std::uint32_t cell) {
   double area = 0;
-  for (const std::uint32_t f : mesh.faces_of_cell(cell)) {
-    const std::span<const std::uint32_t> points = mesh.face(f);
-    const Vec3 center = mesh.face_center(f);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      area += 0.5 * norm(cross(mesh.points()[points[i]] - center,
-                               mesh.points()[points[(i + 1) % points.size()]] - center));
-  }
+  for (const std::uint32_t f : mesh.faces_of_cell(cell)) area += norm(mesh.face_area(f));
   return 6 * mesh.cell_volume(cell) / area;
 }
 

@@ -391,13 +391,8 @@ class Start {
   [[nodiscard]] double inner_radius(Index c) const {
     double least = std::numeric_limits<double>::infinity();
     for (const Index f : mesh_.faces_of_cell(c)) {
-      const std::span<const Index> points = mesh_.face(f);
-      const Vec3 center = mesh_.face_center(f);
-      Vec3 normal;
-      for (std::size_t i = 0; i < points.size(); ++i)
-        normal += cross(mesh_.points()[points[i]] - center,
-                        mesh_.points()[points[(i + 1) % points.size()]] - center);
-      least = std::min(least, std::abs(dot(normalized(normal), center - mesh_.cell_center(c))));
+      const Vec3 away = mesh_.face_center(f) - mesh_.cell_center(c);
+      least = std::min(least, std::abs(dot(normalized(mesh_.face_area(f)), away)));
     }
     return least;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -59,6 +60,19 @@ class MeshValues {
   /// Returns the number of the one material with the greatest value at all points of an active cell; none if
   /// there are several.
   [[nodiscard]] std::optional<std::uint16_t> sole_owner(Index cell) const;
+  /// Calls visit(cell, weight) for the cells whose values determine that of a material at a point of an
+  /// active cell; for none where the material has no value there.
+  template <class Visit>
+  void for_each_source(Index point, std::uint16_t material, Visit&& visit) const {
+    if (point >= place_of_point_.size()) {
+      visit(static_cast<Index>(point - place_of_point_.size()), 1.0);
+      return;
+    }
+    const std::span<const PointEntry> own = at_point(point);
+    if (std::ranges::find(own, material, &PointEntry::material) == own.end()) return;
+    const auto& [cells, weights] = stencils_[place_of_point_[point]];
+    for (std::size_t i = 0; i < cells.size(); ++i) visit(cells[i], weights[i]);
+  }
   /// Finds the materials that may own a part of a tetrahedron of an active cell, ascending by number.
   void find_materials(const std::array<Index, 4>& corners, std::vector<CornerValues>& found) const;
 

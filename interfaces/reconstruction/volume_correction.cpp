@@ -14,164 +14,11 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/sole_owners.h"
 #include "interfaces/reconstruction/total_closing.h"
+#include "interfaces/reconstruction/volume_system.h"
 
 namespace adamas::interfaces {
 
 namespace {
-
-/// A linear system for the volumes of materials in cells. It is a sparse matrix in which each exchange
-/// between two materials of a cell is stored once.
-struct LinearSystem {
-  /// The rows of the two volumes, and the range of the unknowns' coefficients.
-  struct Exchange {
-    std::uint32_t gains, loses, first, count;
-  };
-  struct Coefficient {
-    std::uint32_t unknown;
-    float by;
-  };
-  /// The equations of a group of cells.
-  struct Block {
-    std::vector<Exchange> exchanges;
-    std::vector<Coefficient> coefficients;
-    std::uint32_t first_row = 0, last_row = 0;  ///< the range of its cells' rows
-    std::size_t cells_off = 0;
-  };
-  std::vector<Block> blocks;
-  std::vector<double> missing;  ///< missing volumes, by row
-
-  [[nodiscard]] std::size_t cells_off() const;
-  /// Returns the cost to be minimised: the sum of cost_of() over all rows.
-  [[nodiscard]] double cost() const;
-  /// Returns approximately the shortest move of the unknowns that gives the missing volumes. The normal
-  /// equations are solved by conjugate gradients; rows that miss much have less weight, as in cost(). The
-  /// equations are damped and the iteration stops early, so that unknowns on which volumes hardly depend do
-  /// not oscillate.
-  [[nodiscard]] std::vector<double> solve(const std::vector<double>& damping) const;
-
- private:
-  [[nodiscard]] std::vector<double> preconditioner(const std::vector<double>& weight,
-                                                   const std::vector<double>& damping) const;
-  static void add_gains(const Block& block, const std::vector<double>& move, std::vector<double>& rows);
-  static void add_gradients(const Block& block, const std::vector<double>& rows,
-                            std::vector<double>& gradient);
-};
-
-/// Returns the cost of a missing volume: its square if it is small; larger ones grow more slowly (Huber
-/// 1964), so that a cell whose volumes cannot be reached does not spoil the cells round it.
-double cost_of(double missing);
-
-constexpr int kMostSteps = 60;
-/// Conjugate gradients end when the scaled squared gradient has fallen to this part.
-constexpr double kSolved = 1e-5;
-/// Rows that miss more than this, as a part of a cell, weigh less than others, down to the least weight.
-constexpr double kSmall = 2e-3, kLeastWeight = 0.05;
-
-double weight_of(double missing) {
-  const double size = std::abs(missing);
-  return size <= kSmall ? 1 : std::max(kSmall / size, kLeastWeight);
-}
-
-double cost_of(double missing) {
-  constexpr double kGreat = kSmall / kLeastWeight;
-  const double size = std::abs(missing), size_of_linear = std::min(size, kGreat);
-  if (size <= kSmall) return size * size;
-  return kSmall * (2 * size_of_linear - kSmall) +
-         kLeastWeight * (size * size - size_of_linear * size_of_linear);
-}
-
-double LinearSystem::cost() const {
-  double sum = 0;
-  for (const double m : missing) sum += cost_of(m);
-  return sum;
-}
-
-std::size_t LinearSystem::cells_off() const {
-  std::size_t sum = 0;
-  for (const Block& block : blocks) sum += block.cells_off;
-  return sum;
-}
-
-/// Adds to `rows` what the volumes of a block's cells gain by a move of the unknowns.
-void LinearSystem::add_gains(const Block& block, const std::vector<double>& move, std::vector<double>& rows) {
-  for (const Exchange& exchange : block.exchanges) {
-    double sum = 0;
-    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
-      sum += static_cast<double>(block.coefficients[c].by) * move[block.coefficients[c].unknown];
-    rows[exchange.gains] += sum;
-    rows[exchange.loses] -= sum;
-  }
-}
-
-/// Adds the product of the transposed matrix of a block and the rows.
-void LinearSystem::add_gradients(const Block& block, const std::vector<double>& rows,
-                                 std::vector<double>& gradient) {
-  for (const Exchange& exchange : block.exchanges) {
-    const double gain = rows[exchange.gains] - rows[exchange.loses];
-    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
-      gradient[block.coefficients[c].unknown] += static_cast<double>(block.coefficients[c].by) * gain;
-  }
-}
-
-/// Returns the inverse of the normal equations' diagonal.
-std::vector<double> LinearSystem::preconditioner(const std::vector<double>& weight,
-                                                 const std::vector<double>& damping) const {
-  std::vector<double> scale = damping;
-  for (const Block& block : blocks) {
-    for (const Exchange& exchange : block.exchanges) {
-      const double w = weight[exchange.gains] + weight[exchange.loses];
-      for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c) {
-        const auto by = static_cast<double>(block.coefficients[c].by);
-        scale[block.coefficients[c].unknown] += w * by * by;
-      }
-    }
-  }
-  for (double& s : scale) s = 1 / s;
-  return scale;
-}
-
-std::vector<double> LinearSystem::solve(const std::vector<double>& damping) const {
-  const std::size_t unknowns = damping.size();
-  const std::size_t row_count = missing.size();
-  std::vector<double> weight(row_count), rows(row_count), gradient(unknowns, 0);
-  for (std::size_t i = 0; i < row_count; ++i) {
-    weight[i] = weight_of(missing[i]);
-    rows[i] = weight[i] * missing[i];
-  }
-  for (const Block& block : blocks) add_gradients(block, rows, gradient);
-  const std::vector<double> scale = preconditioner(weight, damping);
-  std::vector<double> x(unknowns, 0), way(unknowns, 0), bend(unknowns);
-  double before = 1, enough = 0;
-  for (int step = 0; step < kMostSteps; ++step) {
-    LoopProgress::check();
-    double now = 0;
-    for (std::size_t i = 0; i < unknowns; ++i) now += scale[i] * gradient[i] * gradient[i];
-    if (step == 0) enough = kSolved * now;
-    if (now <= enough) break;
-    const double turn = step == 0 ? 0 : now / before;
-    for (std::size_t i = 0; i < unknowns; ++i) {
-      way[i] = scale[i] * gradient[i] + turn * way[i];
-      bend[i] = damping[i] * way[i];
-    }
-    // No other block has a block's rows, so one pass over the coefficients is enough, while the rows are in
-    // the cache.
-    std::fill(rows.begin(), rows.end(), 0.0);
-    for (const Block& block : blocks) {
-      add_gains(block, way, rows);
-      for (std::uint32_t i = block.first_row; i < block.last_row; ++i) rows[i] *= weight[i];
-      add_gradients(block, rows, bend);
-    }
-    double squares = 0;
-    for (std::size_t i = 0; i < unknowns; ++i) squares += way[i] * bend[i];
-    const double length = now / squares;
-    for (std::size_t i = 0; i < unknowns; ++i) {
-      x[i] += length * way[i];
-      gradient[i] -= length * bend[i];
-    }
-    before = now;
-  }
-  return x;
-}
 
 using Entry = SiteValues::Entry;
 
@@ -369,7 +216,7 @@ class Correction {
   /// halved if they go too far.
   void correct_all(Progress& progress) {
     if (unknowns_.empty()) return;
-    LinearSystem system;
+    VolumeSystem system;
     system.missing.resize(row_of_.back());
     linearise(system);
     double best = system.cost();
@@ -395,7 +242,7 @@ class Correction {
 
   /// Moves values. If that does not reduce the cost, the move is shortened: first at sites where it increases
   /// the cost, then everywhere; if nothing helps, values do not change. Returns the system's cost afterwards.
-  double step(LinearSystem& system, const std::vector<double>& move, double best) {
+  double step(VolumeSystem& system, const std::vector<double>& move, double best) {
     std::vector<double> start, shares(unknowns_.size(), 1);
     for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
     const std::vector<double> before = costs_round_sites(system.missing);
@@ -437,7 +284,7 @@ class Correction {
     std::vector<double> own(data_.grid.site_count(), 0), sums(own.size(), 0);
     for (std::size_t n = 0; n < cells_to_correct_.size(); ++n) {
       for (std::uint32_t row = row_of_[n]; row < row_of_[n + 1]; ++row)
-        own[cells_to_correct_[n]] += cost_of(missing[row]);
+        own[cells_to_correct_[n]] += VolumeSystem::cost_of(missing[row]);
     }
     parallel_for(cells_to_correct_.size(), 1024, [&](std::size_t n) {
       double sum = own[cells_to_correct_[n]];
@@ -465,7 +312,7 @@ class Correction {
   }
 
   /// Updates the system in blocks where values have changed.
-  void linearise(LinearSystem& system) {
+  void linearise(VolumeSystem& system) {
     const bool fresh = system.blocks.empty();
     system.blocks.resize((cells_to_correct_.size() + kBlock - 1) / kBlock);
     parallel_chunks(cells_to_correct_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -473,7 +320,7 @@ class Correction {
                                  cells_to_correct_.begin() + static_cast<std::ptrdiff_t>(end),
                                  [&](std::uint32_t site) { return has_changed(site, 1); }))
         return;
-      LinearSystem::Block& block = system.blocks[begin / kBlock];
+      VolumeSystem::Block& block = system.blocks[begin / kBlock];
       block.exchanges.clear();
       block.coefficients.clear();
       block.first_row = row_of_[begin];
@@ -493,7 +340,7 @@ class Correction {
   }
 
   void add_exchange(const CellVolumes& cell, const CellVolumes::Pair& pair, std::uint32_t row,
-                    LinearSystem::Block& block) const {
+                    VolumeSystem::Block& block) const {
     const auto first = static_cast<std::uint32_t>(block.coefficients.size());
     for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
       if (pair.growth[n] == 0) continue;

@@ -79,6 +79,27 @@ TEST_F(Series, EachMeshIsThatOfItsStepAlone) {
 }
 
 /// No list is left behind that names files which do not exist.
+/// Colours that a step has are those of all later ones too, in meshes and in curves.
+TEST_F(Series, AllStepsHaveTheColoursOfTheFiles) {
+  for (const int step : {0, 1, 2}) {
+    std::string labels;
+    for (int site = 0; site < 6 * 6 * 6; ++site) labels += static_cast<char>(site % 6 > step ? 2 : 1);
+    write("p_" + std::to_string(step) + ".seg.nrrd",
+          std::string("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 6 6 6\nencoding: raw\n"
+                      "Segment0_Name:=bone\nSegment0_LabelValue:=1\n"
+                      "Segment1_Name:=skin\nSegment1_LabelValue:=2\n") +
+              (step == 1 ? "\n" : "Segment0_Color:=0.5 0.25 0.75\n\n") + labels);
+  }
+  run_well({"resample", "p_0.seg.nrrd", "p_1.seg.nrrd", "p_2.seg.nrrd", "--cells", "--interface-error", "20%",
+            "-o", "m_%d.vtu", "--curves", "c.svg"});
+  const std::string bone = "rgb(50%,25%,75%)";
+  for (const std::string mesh : {"m_0.vtu", "m_1.vtu", "m_2.vtu"}) {
+    run_well({"slice", mesh, "--plane", "z=2.7", "--no-interfaces", "-o", "s.svg"});
+    EXPECT_NE(read("s.svg").find(bone), std::string::npos) << mesh;
+  }
+  EXPECT_NE(read("c.svg").find(bone), std::string::npos);
+}
+
 TEST_F(Series, NamesThatCannotBe) {
   make_series("2");
   const std::string longest(251, 'm');

@@ -1,6 +1,11 @@
 // Tests units of lengths and of values, which go through stores.
 
 #include <fmt/format.h>
+#include <vtkFieldData.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkStringArray.h>
+#include <vtkXMLImageDataReader.h>
 
 #include <cstddef>
 
@@ -64,12 +69,32 @@ TEST_F(Units, OmeZarrHasWordsForThem) {
   for (const auto& axis : attributes["multiscales"][0]["axes"]) EXPECT_EQ(axis["unit"], "millimeter");
 }
 
+/// What VTK has no words for is in the field data of a .vti, and comes back.
+TEST_F(Units, FilesOfVtkKeepThem) {
+  write_nrrd("a.nrrd", "space units: \"inch\" \"inch\" \"inch\"\nsample units: K\n");
+  run_well({"store", "a.nrrd", "-o", "a.adm", "-q"});
+  EXPECT_EQ(run_well({"restore", "a.adm", "-o", "a.vti", "-q"}).err, "");
+  run_well({"store", "a.vti", "-o", "b.adm", "-q"});
+  const vtkNew<vtkXMLImageDataReader> reader;
+  reader->SetFileName((folder() / "a.vti").c_str());
+  reader->Update();
+  auto* text =
+      vtkStringArray::SafeDownCast(reader->GetOutput()->GetFieldData()->GetAbstractArray("length_unit"));
+  ASSERT_NE(text, nullptr);
+  EXPECT_EQ(text->GetValue(0), "inch");
+  for (const std::string file : {"a.vti", "b.adm"}) {
+    run_well({"info", file, "--json", "a.json"});
+    EXPECT_EQ(read_json("a.json")["length_unit"], "inch") << file;
+    EXPECT_EQ(read_json("a.json")["value_unit"], "K") << file;
+  }
+}
+
 TEST_F(Units, ANoteTellsOfThoseThatAFormatCannotTell) {
   write_nrrd("a.nrrd", "space units: \"inch\" \"inch\" \"inch\"\nsample units: K\n");
   run_well({"store", "a.nrrd", "-o", "a.adm", "-q"});
-  const auto notes = run({"restore", "a.adm", "-o", "a.vti"});
+  const auto notes = run({"restore", "a.adm", "-o", "a.mha"});
   EXPECT_EQ(notes.status, 0);
-  EXPECT_TRUE(says(notes.err, "a.vti: the unit of length, inch, and that of values, K, is not kept"));
+  EXPECT_TRUE(says(notes.err, "a.mha: the unit of length, inch, and that of values, K, is not kept"));
 }
 
 TEST_F(Units, AxesOfDifferentUnitsHaveNone) {

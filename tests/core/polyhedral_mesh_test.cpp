@@ -68,6 +68,17 @@ TEST(PolyhedralMesh, FacesRunCounterClockwiseFromTheSecondCell) {
 }
 
 /// A mirrored mesh has the same volumes: cells are turned the right way round.
+TEST(PolyhedralMesh, TheFacesOfACellEncloseIt) {
+  const PolyhedralMesh mesh =
+      to_mesh(make_hexahedra({3, 3, 3}, [](const Vec3& p) { return jittered(p, 0.1); }));
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    Vec3 sum;
+    for (const auto f : mesh.faces_of_cell(c))
+      sum += (mesh.cells_of_face(f)[0] == c ? 1.0 : -1.0) * mesh.face_area(f);
+    EXPECT_LT(norm(sum), 1e-15);
+  }
+}
+
 TEST(PolyhedralMesh, TurnsCellsThatAreInsideOut) {
   const PolyhedralMesh mesh = to_mesh(make_hexahedra({2, 2, 2}, [](const Vec3& p) {
     return Vec3{1 - p.x, p.y, p.z};

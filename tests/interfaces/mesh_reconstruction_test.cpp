@@ -53,6 +53,18 @@ void expect_volumes(const MeshData& data, const InterfaceMesh& mesh) {
     EXPECT_NEAR(found[m], wanted[m], 1e-9 * domain) << data.materials[m];
 }
 
+std::size_t bodies_of(const InterfaceMesh& mesh, const Box3& box) {
+  return InterfaceNetwork(mesh, box).table().body_count();
+}
+
+std::size_t bodies_of(const InterfaceMesh& mesh, const Box3& box, MaterialId material) {
+  const InterfaceNetwork network(mesh, box);
+  std::size_t count = 0;
+  for (BodyId b(0); b.value < network.table().body_count(); ++b.value)
+    count += network.table().material(b) == material ? 1 : 0;
+  return count;
+}
+
 TEST(MeshSubdivision, LinearFunctionsComeBackExactly) {
   for (const PolyhedralMesh& mesh : {jittered_cube(4), tube(4)}) {
     const MeshSubdivision subdivision(mesh);
@@ -105,6 +117,25 @@ TEST(MeshReconstruction, ABallIsFound) {
   EXPECT_LT(sum / static_cast<double>(found.mesh.points.size()), 0.02 / kCells);
   EXPECT_LT(most, 0.15 / kCells);
   EXPECT_LT(found.agreement.cells.mean_difference, 0.005);
+}
+
+/// Tetrahedra hold their fractions, and yet no value stands out among those round it, which would cut off
+/// pieces.
+TEST(MeshReconstruction, ABallOnTetrahedraIsInOnePiece) {
+  constexpr std::uint32_t kCells = 8;
+  const double size = 1 / (kCells * std::cbrt(6.0));
+  const auto ball = [](const Vec3& p) { return 0.31 - distance(p, {0.52, 0.49, 0.5}); };
+  const MeshData data =
+      sampled_data(test::to_tetrahedra(make_hexahedra(
+                       {kCells, kCells, kCells}, [](const Vec3& p) { return jittered(p, 0.2 / kCells); })),
+                   ball, 4);
+  const MeshReconstruction found = reconstruct_mesh(data);
+  expect_volumes(data, found.mesh);
+  EXPECT_EQ(bodies_of(found.mesh, data.mesh.box()), 2u);
+  double most = 0;
+  for (const Vec3& p : found.mesh.points) most = std::max(most, std::abs(ball(p)));
+  EXPECT_LT(most, 0.35 * size);
+  EXPECT_LT(found.agreement.cells.mean_difference, 3e-4);
 }
 
 TEST(MeshReconstruction, TheBoundaryOfWhatIsNoBoxIsAnInterface) {
@@ -197,11 +228,23 @@ TEST(MeshReconstruction, AFaintLayerAtAWallIsOneBody) {
   }
   for (std::vector<float>& own : fractions) data.fractions.push_back(std::move(own));
   data.normalise();
-  const ResamplingSource source = make_cells_source(data);
-  int crusts = 0;
-  for (BodyId b(0); b.value < source.network->table().body_count(); ++b.value)
-    crusts += source.network->table().material(b) == MaterialId(2) ? 1 : 0;
-  EXPECT_EQ(crusts, 1);
+  EXPECT_EQ(bodies_of(reconstruct_mesh(data).mesh, data.mesh.box(), MaterialId(2)), 1u);
+}
+
+/// A film thinner than half a cell is one body, and cells hold their fractions of it.
+TEST(MeshReconstruction, AThinFilmIsKept) {
+  constexpr std::uint32_t kCells = 8;
+  const Vec3 normal = normalized(Vec3{1, 0.2, 0.1});
+  const MeshData data = sampled_data(
+      jittered_cube(kCells),
+      [&](const Vec3& p) {
+        return 0.2 / kCells - std::abs(dot(p - Vec3{0.51, 0.49, 0.5}, normal));
+      },
+      4);
+  const MeshReconstruction found = reconstruct_mesh(data);
+  expect_volumes(data, found.mesh);
+  EXPECT_EQ(bodies_of(found.mesh, data.mesh.box(), MaterialId(0)), 1u);
+  EXPECT_LT(found.agreement.cells.mean_difference, 0.01);
 }
 
 /// A step that is blurred by a cell and a half, and the mould that it meets: each of its cells is full.
@@ -398,7 +441,7 @@ TEST(LongMeshReconstruction, BallsOfFractionsWithErrorsAreSmooth) {
     }
     EXPECT_LT(sum / static_cast<double>(found.mesh.points.size()), 0.06 * size);
     EXPECT_LT(most, 0.4 * size);
-    EXPECT_EQ(make_cells_source(data).network->table().body_count(), 2u);
+    EXPECT_EQ(bodies_of(found.mesh, data.mesh.box()), 2u);
     // Held to the end, errors make the surface rough.
     double rough = 0;
     for (const Vec3& p : reconstruct_mesh(data, {.error = 0.0}).mesh.points)

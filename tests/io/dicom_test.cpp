@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/io/grid_file.h"
 #include "core/io/multi_material_reader.h"
+#include "core/io/volume_reader.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
@@ -68,6 +69,7 @@ std::string file_bytes(const std::string& storage, const std::string& data) {
 struct SliceFile {
   Vec3 origin;
   std::vector<std::int16_t> pixels;
+  std::vector<std::uint32_t> wide_pixels = {};  ///< of four bytes, in place of `pixels`
   std::string series = "1.2.3", text = "head";
   double slope = 1, intercept = 0;
   Vec3 row{1, 0, 0}, column{0, 1, 0};
@@ -77,20 +79,22 @@ struct SliceFile {
     const std::string storage = "1.2.840.10008.5.1.4.1.1.2";
     std::string samples;
     for (const std::int16_t v : pixels) samples += number_bytes(static_cast<std::uint16_t>(v), 2);
-    put_bytes(path,
-              file_bytes(storage, element(8, 0x16, "UI", storage) + element(8, 0x18, "UI", "1.2.3.5") +
-                                      element(8, 0x60, "CS", "CT") + element(8, 0x103e, "LO", text) +
-                                      element(0x20, 0xd, "UI", "1.2") + element(0x20, 0xe, "UI", series) +
-                                      element(0x20, 0x32, "DS", triple(origin)) +
-                                      element(0x20, 0x37, "DS", triple(row) + "\\" + triple(column)) +
-                                      short_number(0x28, 2, 1) + element(0x28, 4, "CS", "MONOCHROME2") +
-                                      short_number(0x28, 0x10, rows) + short_number(0x28, 0x11, columns) +
-                                      element(0x28, 0x30, "DS", "0.5\\0.25") + short_number(0x28, 0x100, 16) +
-                                      short_number(0x28, 0x101, 16) + short_number(0x28, 0x102, 15) +
-                                      short_number(0x28, 0x103, 1) +
-                                      element(0x28, 0x1052, "DS", fmt::format("{}", intercept)) +
-                                      element(0x28, 0x1053, "DS", fmt::format("{}", slope)) +
-                                      element(0x7fe0, 0x10, "OW", samples)));
+    for (const std::uint32_t v : wide_pixels) samples += number_bytes(v, 4);
+    const unsigned bits = wide_pixels.empty() ? 16 : 32, is_signed = wide_pixels.empty() ? 1 : 0;
+    put_bytes(path, file_bytes(storage,
+                               element(8, 0x16, "UI", storage) + element(8, 0x18, "UI", "1.2.3.5") +
+                                   element(8, 0x60, "CS", "CT") + element(8, 0x103e, "LO", text) +
+                                   element(0x20, 0xd, "UI", "1.2") + element(0x20, 0xe, "UI", series) +
+                                   element(0x20, 0x32, "DS", triple(origin)) +
+                                   element(0x20, 0x37, "DS", triple(row) + "\\" + triple(column)) +
+                                   short_number(0x28, 2, 1) + element(0x28, 4, "CS", "MONOCHROME2") +
+                                   short_number(0x28, 0x10, rows) + short_number(0x28, 0x11, columns) +
+                                   element(0x28, 0x30, "DS", "0.5\\0.25") + short_number(0x28, 0x100, bits) +
+                                   short_number(0x28, 0x101, bits) + short_number(0x28, 0x102, bits - 1) +
+                                   short_number(0x28, 0x103, is_signed) +
+                                   element(0x28, 0x1052, "DS", fmt::format("{}", intercept)) +
+                                   element(0x28, 0x1053, "DS", fmt::format("{}", slope)) +
+                                   element(0x7fe0, 0x10, "OW", samples)));
   }
 };
 
@@ -173,6 +177,47 @@ TEST(Dicom, UnequalGapsAndScalesAreKept) {
   for (int k = 0; k < 3; ++k)
     EXPECT_EQ(values[static_cast<std::size_t>(12 * k)], static_cast<float>((0.5 + k) * (100 * k - 50)));
   EXPECT_TRUE(says(error_of([&] { read_volume(folder / "pet"); }), "pet: "));
+}
+
+/// The numbers of pixels of four bytes come back, whatever scale they have: float32 would round them.
+TEST(Dicom, WideNumbersAreExact) {
+  struct Case {
+    double slope, intercept, slope_above;  ///< the last: of slices above the first one
+    std::string type;
+  };
+  for (const Case& c : {Case{1, 0, 1, "uint32"}, Case{2, 0, 2, "int64"}, Case{0.1, -3, 0.1, "uint32"},
+                        Case{0.1, 0, 0.3, "float64"}}) {
+    const Scratch folder;
+    std::filesystem::create_directory(folder / "dose");
+    for (unsigned k = 0; k < 3; ++k) {
+      SliceFile slice{{0, 0, 2.0 * k}, {}};
+      for (unsigned i = 0; i < 12; ++i) slice.wide_pixels.push_back(4294967295u - 12 * k - i);
+      slice.slope = k == 0 ? c.slope : c.slope_above;
+      slice.intercept = c.intercept;
+      slice.write(folder / fmt::format("dose/{}", k));
+    }
+    const GridFile grid = read_grid_file(folder / "dose");
+    const GridArray& array = grid.arrays[0];
+    EXPECT_EQ(array.type, c.type);
+    const std::vector<double> values = std::visit(
+        [&](const auto& numbers) {
+          std::vector<double> all;
+          for (const auto number : numbers) all.push_back(array.value(number));
+          return all;
+        },
+        array.values);
+    // A store keeps the numbers, and the scale beside them.
+    VolumeOptions options;
+    options.keep_scale = true;
+    const VolumeReader kept = open_volume(folder / "dose", options);
+    EXPECT_EQ(stored_name(kept.source().stored), c.type);
+    EXPECT_EQ(kept.grid().slope, array.slope);
+    EXPECT_EQ(kept.grid().intercept, array.intercept);
+    for (unsigned n = 0; n < 36; ++n) {
+      const double wanted = (n < 12 ? c.slope : c.slope_above) * (4294967295.0 - n) + c.intercept;
+      EXPECT_EQ(values[n], wanted) << c.type << " " << n;
+    }
+  }
 }
 
 TEST(Dicom, WhatIsNoVolumeIsRefusedInOneLine) {

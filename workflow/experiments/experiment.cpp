@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
+#include "core/io/named_colours.h"
 #include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/slice_picture.h"
@@ -291,11 +292,13 @@ void Experiment::follow_series() {
   std::optional<SeriesFilm> film;
   if (!options.film.file.empty()) film.emplace(options.film, options.name);
   std::vector<SeriesEntry> meshes;
-  const auto finish = [&](std::size_t n, ResampledMesh& mesh) {
+  const auto finish = [&](std::size_t n, ResampledMesh& mesh, const MaterialColours& colours) {
     const double time = options_.steps[n].time;
-    if (film) film->add(time, mesh);
+    if (film) film->add(time, mesh, colours);
     meshes.push_back({time, step_file(list, n, ".vtu")});
-    write_unstructured_mesh(folder_.file(meshes.back().file), to_unstructured_mesh(mesh));
+    UnstructuredMesh file = to_unstructured_mesh(mesh);
+    add_colours(mesh.materials, colours, file.field_arrays);
+    write_unstructured_mesh(folder_.file(meshes.back().file), std::move(file));
   };
   record_.series = resample_steps(options_.steps, options, {finish, {}}, progress_);
   write_series(list, meshes);

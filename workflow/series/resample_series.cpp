@@ -1,9 +1,11 @@
 #include "adamas/resample_series.h"
 
 #include <optional>
+#include <utility>
 
 #include "adamas/series_output.h"
 #include "core/base/loop_progress.h"
+#include "core/io/named_colours.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
@@ -32,12 +34,14 @@ ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const Res
   if (!options.film.file.empty()) film.emplace(options.film, options.name);
 
   StepActions actions;
-  actions.finish = [&](std::size_t n, ResampledMesh& mesh) {
-    if (film) film->add(steps[n].time, mesh);
+  actions.finish = [&](std::size_t n, ResampledMesh& mesh, const MaterialColours& colours) {
+    if (film) film->add(steps[n].time, mesh, colours);
     if (!meshes) return;
     progress.step("writing " + options.meshes.string(), -1);
+    UnstructuredMesh file = to_unstructured_mesh(mesh);
+    add_colours(mesh.materials, colours, file.field_arrays);
     meshes->write(
-        n, [&](const auto& path) { write_unstructured_mesh(path, to_unstructured_mesh(mesh)); }, outputs);
+        n, [&](const auto& path) { write_unstructured_mesh(path, std::move(file)); }, outputs);
   };
   actions.leave_out = [&](std::size_t n) {
     if (meshes) meshes->leave_out(n, outputs);

@@ -113,7 +113,8 @@ ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const Resa
     step.entry = steps[n];
     step.number = n;
     series.steps.push_back(std::move(step));
-    actions.finish(n, mesh);
+    series.colours.merge(find_material_colours(from));
+    actions.finish(n, mesh, series.colours);
   }
   left_out.check(steps.size());
   series.left_out = left_out.all();

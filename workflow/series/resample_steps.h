@@ -11,8 +11,9 @@ namespace adamas::workflow {
 
 /// Functions that are called for the steps of a series, by number.
 struct StepActions {
-  /// Receives the mesh of each step, which it may read and must not change.
-  std::function<void(std::size_t, interfaces::ResampledMesh&)> finish;
+  /// Receives the mesh of each step, which it may read and must not change, and the colours that materials
+  /// have so far.
+  std::function<void(std::size_t, interfaces::ResampledMesh&, const MaterialColours&)> finish;
   /// Is called for each step that is left out.
   std::function<void(std::size_t)> leave_out;
 };

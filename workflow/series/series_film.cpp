@@ -36,10 +36,11 @@ SeriesFilm::SeriesFilm(const SeriesFilmOptions& options, std::string name)
   style_.field = options.field;
 }
 
-void SeriesFilm::add(double time, ResampledMesh& mesh) {
+void SeriesFilm::add(double time, ResampledMesh& mesh, const MaterialColours& colours) {
   SliceInput input;
   input.name = name_;
   input.mesh = std::move(mesh);
+  input.colours = colours;
   if (input.outline(style_.plane).empty())
     fail("{}: expected a plane that cuts {}, found {}", name_, box_text(input.box()),
          to_string(style_.plane));

@@ -22,7 +22,8 @@ class SeriesFilm {
   SeriesFilm(const SeriesFilmOptions& options, std::string name);
 
   /// Cuts the mesh of the next step. Throws Error where the plane does not cut it or there is no such field.
-  void add(double time, interfaces::ResampledMesh& mesh);
+  /// `colours`: those that materials have.
+  void add(double time, interfaces::ResampledMesh& mesh, const MaterialColours& colours);
   /// Draws all steps with one scale of colours.
   void write(const std::filesystem::path& path, Progress& progress);
 

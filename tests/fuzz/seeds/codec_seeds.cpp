@@ -22,6 +22,7 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/storage/store_format.h"
 #include "tests/fuzz/bounds_targets.h"
+#include "tests/fuzz/store_file_targets.h"
 #include "tests/fuzz/time_targets.h"
 #include "tests/support/golden_series.h"
 
@@ -296,6 +297,40 @@ void make_store_file(const std::filesystem::path& folder, const test::GoldenSeri
   write(folder / "store_file", series.name, {bytes.begin(), bytes.end()});
 }
 
+/// Whether some page of a store has samples, but bounds that cannot be had.
+bool has_page_without_bounds(const std::vector<std::byte>& bytes) {
+  const MemoryFile memory(bytes);
+  StoreFile file(memory.path());
+  for (std::uint32_t step = 0; step < file.steps(); ++step) {
+    SeriesPages<std::uint8_t> pages(file, step, 0);
+    for (const PageId& id : pages_of(file)) {
+      if (pages.samples(id) != nullptr && pages.bounds(id) == nullptr) return true;
+    }
+  }
+  return false;
+}
+
+/// Makes a whole store of which some page has samples and no bounds: the first byte from the end is damaged
+/// that leads to one.
+void make_damaged_bounds(const std::filesystem::path& folder, const test::GoldenSeries& series) {
+  const test::Scratch scratch;
+  const test::GoldenSteps<std::uint8_t> steps(series, {20, 9, 18});
+  steps.build(series, scratch / "a.adm");
+  const std::string made = test::bytes_of(scratch / "a.adm");
+  const auto sound = std::as_bytes(std::span(made));
+  for (std::size_t at = made.size(); at-- > StorePrologue::kBytes;) {
+    Bytes bytes(sound.begin(), sound.end());
+    bytes[at] ^= std::byte{0x55};
+    try {
+      const ChecksumRepair repair(bytes);
+      if (!has_page_without_bounds(bytes)) continue;
+    } catch (const Error&) {
+      continue;
+    }
+    return write(folder / "store_file", "no_bounds", bytes);
+  }
+}
+
 /// Makes a whole store of float64 numbers, in two steps.
 void make_number_store(const std::filesystem::path& folder) {
   const test::Scratch scratch;
@@ -386,6 +421,7 @@ void make(const std::filesystem::path& folder) {
   make_store_file<std::uint8_t>(folder, series[2], {17, 9, 4});
   make_store_file<std::uint16_t>(folder, series[3], {18, 5, 4});
   make_store_file<float>(folder, series[4], {18, 3, 4});
+  make_damaged_bounds(folder, series[1]);
   make_number_store(folder);
 }
 
