@@ -304,13 +304,15 @@ class SliceReader {
     });
   }
 
+  /// The value of what is stored in a slice. Single bits are never scaled.
+  static double scaled(const Slice& slice, double stored) {
+    return slice.pixels->type ? slice.frame.slope * stored + slice.frame.intercept : stored;
+  }
+
   /// Calls `use` with the number of each pixel of a slice and its scaled value.
   template <class Use>
   void for_each_pixel(const Slice& slice, const Use& use) const {
-    // Single bits are never scaled.
-    const double slope = slice.pixels->type ? slice.frame.slope : 1,
-                 intercept = slice.pixels->type ? slice.frame.intercept : 0;
-    for_each_stored(slice, [&](std::size_t i, double stored) { use(i, slope * stored + intercept); });
+    for_each_stored(slice, [&](std::size_t i, double stored) { use(i, scaled(slice, stored)); });
   }
 
   void take_segments(const gdcm::DataSet& header) {
@@ -402,8 +404,10 @@ class SliceReader {
     bool one_scale = true, fit_floats = true;
     for (const Slice& slice : slices_) {
       one_scale = one_scale && slice.frame.slope == first.slope && slice.frame.intercept == first.intercept;
-      for_each_stored(slice, [&](std::size_t, double number) { stored.add(number); });
-      for_each_pixel(slice, [&](std::size_t, double value) { values.add(value); });
+      for_each_stored(slice, [&](std::size_t, double number) {
+        stored.add(number);
+        values.add(scaled(slice, number));
+      });
       // A float has room for what two bytes tell.
       const std::optional<StoredType> type = slice.pixels->type;
       fit_floats = fit_floats && (!type || *type == StoredType::kFloat32 || stored_bytes(*type) <= 2);

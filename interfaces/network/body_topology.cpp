@@ -16,8 +16,6 @@ namespace adamas::interfaces {
 
 namespace {
 
-MaterialId as_material(BodyId body) { return MaterialId(body.value); }
-
 /// Returns the number of a corner of a side of a triangle; both sides have three.
 std::uint32_t corner_index(std::uint32_t triangle, int side, std::size_t corner) {
   return 6 * triangle + 3 * static_cast<std::uint32_t>(side) + static_cast<std::uint32_t>(corner);

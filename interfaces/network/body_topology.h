@@ -10,6 +10,9 @@
 
 namespace adamas::interfaces {
 
+/// A body in place of a material, for meshes between bodies.
+inline MaterialId as_material(BodyId body) { return MaterialId(body.value); }
+
 /// Finds the topology of `bodies` bodies, given a welded mesh whose `front` and `back` are bodies instead of
 /// materials. Boundaries are seen from the inside of their body: triangles that bound the same wedge round an
 /// edge are neighbours, so that bodies that touch themselves at a point or an edge are recognised. Faces of

@@ -11,8 +11,6 @@ namespace {
 
 using Pair = std::array<BodyId, 2>;
 
-MaterialId as_material(BodyId body) { return MaterialId(body.value); }
-
 bool contains(Box3 box, std::span<const Vec3> points) {
   const double margin = kOnDomainFace * box.diagonal();
   box.min -= {margin, margin, margin};

@@ -258,7 +258,8 @@ std::vector<TetrahedronId> ShownInterfaces::failing_among(const std::vector<Tetr
   std::vector<Far> far(leaves.size());
   parallel_for(leaves.size(), 16, [&](std::size_t i) {
     const Tetrahedron cell = state_.frame(leaves[i]);
-    far[i].input = std::ranges::any_of(state_.hierarchy.payload(leaves[i]).triangles,
+    far[i].input = cell.diameter() > kFinestForInput * target &&
+                   std::ranges::any_of(state_.hierarchy.payload(leaves[i]).triangles,
                                        [&](std::uint32_t t) { return nearby.has_far_point(t, cell); });
     const Box3 box = state_.box(leaves[i]);
     far[i].input_junctions = nearby.far_input_junctions(box);
@@ -266,8 +267,7 @@ std::vector<TetrahedronId> ShownInterfaces::failing_among(const std::vector<Tetr
   });
   std::vector<TetrahedronId> failing;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (far[i].input && state_.frame(leaves[i]).diameter() > kFinestForInput * target)
-      failing.push_back(leaves[i]);
+    if (far[i].input) failing.push_back(leaves[i]);
     for (const Vec3& p : far[i].input_junctions) state_.add_leaf_at(p, kFinestForInput * target, failing);
     for (const Vec3& p : far[i].shown_junctions)
       state_.add_leaf_at(p, kFinestForShownJunctions * target, failing);

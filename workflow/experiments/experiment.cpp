@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
-#include "core/io/named_colours.h"
 #include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/slice_picture.h"
@@ -23,6 +22,7 @@
 #include "workflow/experiments/experiment_run.h"
 #include "workflow/input/left_out_steps.h"
 #include "workflow/input/read_input.h"
+#include "workflow/output/resampled_mesh_output.h"
 #include "workflow/output/surface_pictures.h"
 #include "workflow/series/balance.h"
 #include "workflow/series/resample_steps.h"
@@ -296,9 +296,7 @@ void Experiment::follow_series() {
     const double time = options_.steps[n].time;
     if (film) film->add(time, mesh, colours);
     meshes.push_back({time, step_file(list, n, ".vtu")});
-    UnstructuredMesh file = to_unstructured_mesh(mesh);
-    add_colours(mesh.materials, colours, file.field_arrays);
-    write_unstructured_mesh(folder_.file(meshes.back().file), std::move(file));
+    write_resampled_mesh(folder_.file(meshes.back().file), mesh, colours);
   };
   record_.series = resample_steps(options_.steps, options, {finish, {}}, progress_);
   write_series(list, meshes);

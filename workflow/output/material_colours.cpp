@@ -14,6 +14,7 @@
 #include "interfaces/api/select.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
+#include "workflow/output/resampled_mesh_output.h"
 
 namespace adamas {
 
@@ -24,11 +25,15 @@ MaterialColours find_material_colours(const InputOptions& options) {
   return find_named_colours(with_main_file(options).path, options.region_names);
 }
 
-void write_mesh(const std::filesystem::path& path, const AdaptiveMesh& mesh, const MaterialColours& colours) {
-  const ResampledMesh& resampled = mesh.contents().mesh();
-  UnstructuredMesh file = to_unstructured_mesh(resampled);
-  add_colours(resampled.materials, colours, file.field_arrays);
+void workflow::write_resampled_mesh(const std::filesystem::path& path, const ResampledMesh& mesh,
+                                    const MaterialColours& colours) {
+  UnstructuredMesh file = to_unstructured_mesh(mesh);
+  add_colours(mesh.materials, colours, file.field_arrays);
   write_unstructured_mesh(path, std::move(file));
+}
+
+void write_mesh(const std::filesystem::path& path, const AdaptiveMesh& mesh, const MaterialColours& colours) {
+  workflow::write_resampled_mesh(path, mesh.contents().mesh(), colours);
 }
 
 void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh,

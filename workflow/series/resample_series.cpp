@@ -1,14 +1,11 @@
 #include "adamas/resample_series.h"
 
 #include <optional>
-#include <utility>
 
 #include "adamas/series_output.h"
 #include "core/base/loop_progress.h"
-#include "core/io/named_colours.h"
-#include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
-#include "interfaces/mesh/resampled_mesh_file.h"
+#include "workflow/output/resampled_mesh_output.h"
 #include "workflow/series/resample_steps.h"
 #include "workflow/series/series_film.h"
 
@@ -38,10 +35,8 @@ ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const Res
     if (film) film->add(steps[n].time, mesh, colours);
     if (!meshes) return;
     progress.step("writing " + options.meshes.string(), -1);
-    UnstructuredMesh file = to_unstructured_mesh(mesh);
-    add_colours(mesh.materials, colours, file.field_arrays);
     meshes->write(
-        n, [&](const auto& path) { write_unstructured_mesh(path, std::move(file)); }, outputs);
+        n, [&](const auto& path) { write_resampled_mesh(path, mesh, colours); }, outputs);
   };
   actions.leave_out = [&](std::size_t n) {
     if (meshes) meshes->leave_out(n, outputs);
