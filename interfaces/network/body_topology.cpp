@@ -60,13 +60,34 @@ class EulerCounter {
   template <class Visit>
   void for_each_wedge(const EdgeFans::Fan& fan, Visit&& visit) const {
     const std::size_t n = fan.blades.size();
+    if (!fan.consistent && fan.outside_wedge == EdgeFans::Fan::kNone && visit_wedges_of_pairs(fan, visit)) return;
     for (std::size_t i = 0; i < n; ++i) {
       const Blade &a = fan.blades[i], &b = fan.blades[(i + 1) % n];
-      visit(a, b,
-            n > 1 && i != fan.outside_wedge &&
-                fans_.material(a.triangle, EdgeFans::side_ahead(a)) ==
-                    fans_.material(b.triangle, EdgeFans::side_behind(b)));
+      visit(a, b, n > 1 && i != fan.outside_wedge && ahead(a) == behind(b));
     }
+  }
+
+  [[nodiscard]] MaterialId ahead(const Blade& b) const {
+    return fans_.material(b.triangle, EdgeFans::side_ahead(b));
+  }
+  [[nodiscard]] MaterialId behind(const Blade& b) const {
+    return fans_.material(b.triangle, EdgeFans::side_behind(b));
+  }
+
+  /// Does the same by the bodies alone where each has just two sides at the edge, which must bound one wedge:
+  /// angles of triangles that are all but flat may be wrong. Returns false, without a visit, elsewhere.
+  template <class Visit>
+  bool visit_wedges_of_pairs(const EdgeFans::Fan& fan, Visit&& visit) const {
+    const auto& blades = fan.blades;
+    for (const Blade& a : blades) {
+      const auto is_behind = [&](const Blade& b) { return behind(b) == ahead(a); };
+      const auto is_ahead = [&](const Blade& b) { return ahead(b) == ahead(a); };
+      if (std::ranges::count_if(blades, is_behind) != 1 || std::ranges::count_if(blades, is_ahead) != 1)
+        return false;
+    }
+    for (const Blade& a : blades)
+      visit(a, *std::ranges::find_if(blades, [&](const Blade& b) { return behind(b) == ahead(a); }), true);
+    return true;
   }
 
   /// Joins the corners of triangles that bound the same wedge.

@@ -98,6 +98,48 @@ TEST(BodyTopology, ToldApartWhereABodyTouchesItself) {
   }
 }
 
+/// Adds the sides of two boxes that share a wall: bodies 1 and 2 in body 0.
+void add_two_boxes(InterfaceMesh& mesh) {
+  const Vec3 e[3] = {{0.25, 0, 0}, {0, 0.4, 0}, {0, 0, 0.4}};
+  for (std::size_t body = 1; body <= 2; ++body) {
+    const Vec3 o{0.25 * static_cast<double>(body), 0.3, 0.3};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Vec3 &u = e[(a + 1) % 3], &v = e[(a + 2) % 3];
+      const MaterialId inside(body), outside(0);
+      if (a > 0 || body == 1) test::add_patch(mesh, o, v, u, outside, inside, 1);
+      test::add_patch(mesh, o + e[a], u, v, a == 0 && body == 1 ? MaterialId(2) : outside, inside, 1);
+    }
+  }
+}
+
+/// Triangles that are all but flat have angles round their edges which round-off may turn by any amount. Where
+/// three bodies meet, the bodies tell which triangles bound the same one.
+TEST(BodyTopology, DoesNotDependOnTheAnglesOfFlatTriangles) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    InterfaceMesh mesh = test::mesh_with_materials(3);
+    add_two_boxes(mesh);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> shift(-1e-7, 1e-7);
+    const std::size_t triangles = mesh.triangles.size();
+    for (std::size_t t = 0; t < triangles; ++t) {
+      // A point beside the middle of each edge in turn takes a corner's place.
+      for (std::size_t i = 0; i < 3; ++i) {
+        const InterfaceTriangle whole = mesh.triangles[t];
+        const std::uint32_t a = whole.points[i], b = whole.points[(i + 1) % 3], c = whole.points[(i + 2) % 3];
+        const auto middle = static_cast<std::uint32_t>(mesh.points.size());
+        mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]) +
+                              Vec3{shift(random), shift(random), shift(random)});
+        mesh.triangles[t].points = {a, b, middle};
+        mesh.triangles.push_back({{b, c, middle}, whole.front, whole.back});
+        mesh.triangles.push_back({{c, a, middle}, whole.front, whole.back});
+        std::swap(mesh.triangles[t], mesh.triangles.back());
+      }
+    }
+    for (const std::size_t body : {0u, 1u, 2u})
+      EXPECT_EQ(topology(mesh, 3, body), (BodyTopology{1, 2})) << "body " << body << ", seed " << seed;
+  }
+}
+
 /// The topology does not depend on the order of triangles and of their corners.
 TEST(BodyTopology, DoesNotDependOnOrder) {
   InterfaceMesh mesh = test::mesh_with_materials(3);

@@ -21,6 +21,8 @@
 #include "core/io/multi_material_reader.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/api/input.h"
+#include "interfaces/network/domain_faces.h"
+#include "interfaces/network/edge_fans.h"
 #include "interfaces/network/interface_mesh_check.h"
 #include "workflow/input/left_out_steps.h"
 #include "workflow/input/load_mesh.h"
@@ -34,7 +36,7 @@ using namespace workflow;
 
 namespace {
 
-/// The margin of the domain round the interfaces on each side, where no domain is given.
+/// The margin of the domain round interfaces, relative to their size, where no domain is given.
 constexpr double kMargin = 0.05;
 
 /// Notes repairs of volume fractions, unless they are round-off.
@@ -82,14 +84,29 @@ InterfaceMesh read_surface_between(const GivenSurface& surface) {
   return read_surface(surface.file, surface.front, surface.back);
 }
 
+/// Returns the domain of interfaces for which none is given: the box round them, with a margin at the faces at
+/// which they do not end. With a margin at all faces if interfaces end elsewhere.
 Box3 domain_of(const InterfaceMesh& mesh) {
+  check_interface_arrays(mesh);
   Box3 box;
   for (const Vec3& p : mesh.points) box.extend(p);
+  unsigned ended_at = 0;
+  const EdgeFans fans(mesh, nullptr);
+  for (std::size_t edge = 0; edge < fans.size(); ++edge) {
+    if (fans.valence(edge) != 1) continue;
+    const auto [low, high] = fans.ends(edge);
+    const unsigned faces = domain_faces_at(box, mesh.points[low]) & domain_faces_at(box, mesh.points[high]);
+    ended_at |= faces;
+    if (faces != 0) continue;
+    ended_at = 0;
+    break;
+  }
   const Vec3 size = box.size();
   for (int axis = 0; axis < 3; ++axis) {
-    const double margin = kMargin * (size[axis] > 0 ? size[axis] : box.diagonal());
-    box.min[axis] -= margin;
-    box.max[axis] += margin;
+    const bool is_flat = !(size[axis] > 0);
+    const double margin = kMargin * (is_flat ? box.diagonal() : size[axis]);
+    if (is_flat || (ended_at >> (2 * axis) & 1u) == 0) box.min[axis] -= margin;
+    if (is_flat || (ended_at >> (2 * axis) & 2u) == 0) box.max[axis] += margin;
   }
   return box;
 }
