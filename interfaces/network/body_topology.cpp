@@ -60,7 +60,8 @@ class EulerCounter {
   template <class Visit>
   void for_each_wedge(const EdgeFans::Fan& fan, Visit&& visit) const {
     const std::size_t n = fan.blades.size();
-    if (!fan.consistent && fan.outside_wedge == EdgeFans::Fan::kNone && visit_wedges_of_pairs(fan, visit)) return;
+    if (!fan.consistent && fan.outside_wedge == EdgeFans::Fan::kNone && visit_wedges_of_pairs(fan, visit))
+      return;
     for (std::size_t i = 0; i < n; ++i) {
       const Blade &a = fan.blades[i], &b = fan.blades[(i + 1) % n];
       visit(a, b, n > 1 && i != fan.outside_wedge && ahead(a) == behind(b));

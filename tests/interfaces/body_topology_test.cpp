@@ -112,8 +112,8 @@ void add_two_boxes(InterfaceMesh& mesh) {
   }
 }
 
-/// Triangles that are all but flat have angles round their edges which round-off may turn by any amount. Where
-/// three bodies meet, the bodies tell which triangles bound the same one.
+/// Triangles that are all but flat have angles round their edges which round-off may turn by any amount.
+/// Where three bodies meet, the bodies tell which triangles bound the same one.
 TEST(BodyTopology, DoesNotDependOnTheAnglesOfFlatTriangles) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     InterfaceMesh mesh = test::mesh_with_materials(3);

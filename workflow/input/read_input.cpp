@@ -84,8 +84,8 @@ InterfaceMesh read_surface_between(const GivenSurface& surface) {
   return read_surface(surface.file, surface.front, surface.back);
 }
 
-/// Returns the domain of interfaces for which none is given: the box round them, with a margin at the faces at
-/// which they do not end. With a margin at all faces if interfaces end elsewhere.
+/// Returns the domain of interfaces for which none is given: the box round them, with a margin at the faces
+/// at which they do not end. With a margin at all faces if interfaces end elsewhere.
 Box3 domain_of(const InterfaceMesh& mesh) {
   check_interface_arrays(mesh);
   Box3 box;
