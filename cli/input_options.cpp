@@ -148,8 +148,8 @@ void add_interface_options(const Command& command, InputOptions& options) {
   add_region_names(command, options);
   input.add_value(
       "--box", "x0,x1,y0,y1,z0,z1",
-      "The domain of given interfaces (default: that of the grid, else their own box, with 5% more at "
-      "the faces at which they do not end)",
+      "The domain of given interfaces (default: that of the grid, else their own box, with 5% more "
+      "along axes along which they do not end at its faces)",
       options.box, parse_box);
   input.add_value("--weld", "W|W%",
                   "Close gaps of given interfaces that are at most so wide: a length, or a part of the "

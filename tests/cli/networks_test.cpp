@@ -45,6 +45,20 @@ TEST_F(Networks, ProbeTellsVolumesAndAreas) {
   EXPECT_TRUE(read_json("o.json").at("materials")[0].at("volume").is_null());
 }
 
+/// Interfaces that end at opposite faces of their own box fill it; others get a margin.
+TEST_F(Networks, DomainIsTheBoxThatInterfacesFill) {
+  const auto domain = [&](const std::string& file) {
+    run_well({"probe", file, "--json", "j.json"});
+    const auto figures = read_json("j.json");
+    double sum = 0;
+    for (const auto& material : figures.at("materials")) sum += material.at("volume").get<double>();
+    return sum;
+  };
+  run_well({"generate", "scene", "voronoi10", "--dimensions", "8", "-o", "v.vtr", "--interfaces", "v.vtp"});
+  EXPECT_NEAR(domain("v.vtp"), 1, 1e-9);
+  EXPECT_NEAR(domain("net.vtp"), std::pow(1.1 * 2 * kRadius, 3), 1e-3);
+}
+
 TEST_F(Networks, ReconstructChecksAndWritesThemAnew) {
   run_well({"reconstruct", "net.vtp", "--box", "0,1,0,1,0,1", "-o", "again.vtp", "--picture", "p.png",
             "--json", "j.json"});

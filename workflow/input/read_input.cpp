@@ -84,29 +84,37 @@ InterfaceMesh read_surface_between(const GivenSurface& surface) {
   return read_surface(surface.file, surface.front, surface.back);
 }
 
-/// Returns the domain of interfaces for which none is given: the box round them, with a margin at the faces
-/// at which they do not end. With a margin at all faces if interfaces end elsewhere.
-Box3 domain_of(const InterfaceMesh& mesh) {
-  check_interface_arrays(mesh);
-  Box3 box;
-  for (const Vec3& p : mesh.points) box.extend(p);
+/// Returns the faces of the box round interfaces at which they end, as bits (domain_faces_at()); 0 if they end
+/// elsewhere too, or at a face but not at the opposite one.
+unsigned faces_ended_at(const InterfaceMesh& mesh, const Box3& box) {
   unsigned ended_at = 0;
   const EdgeFans fans(mesh, nullptr);
   for (std::size_t edge = 0; edge < fans.size(); ++edge) {
     if (fans.valence(edge) != 1) continue;
     const auto [low, high] = fans.ends(edge);
     const unsigned faces = domain_faces_at(box, mesh.points[low]) & domain_faces_at(box, mesh.points[high]);
+    if (faces == 0) return 0;
     ended_at |= faces;
-    if (faces != 0) continue;
-    ended_at = 0;
-    break;
   }
+  constexpr unsigned kLeastFaces = 1u | 4u | 16u;
+  const bool opposite = (ended_at & kLeastFaces) == (ended_at >> 1 & kLeastFaces);
+  return opposite ? ended_at : 0;
+}
+
+/// Returns the domain of interfaces for which none is given: the box round them, with a margin along the axes
+/// along which they do not end at its faces.
+Box3 domain_of(const InterfaceMesh& mesh) {
+  check_interface_arrays(mesh);
+  Box3 box;
+  for (const Vec3& p : mesh.points) box.extend(p);
+  const unsigned ended_at = faces_ended_at(mesh, box);
   const Vec3 size = box.size();
   for (int axis = 0; axis < 3; ++axis) {
     const bool is_flat = !(size[axis] > 0);
+    if (!is_flat && (ended_at >> (2 * axis) & 1u) != 0) continue;
     const double margin = kMargin * (is_flat ? box.diagonal() : size[axis]);
-    if (is_flat || (ended_at >> (2 * axis) & 1u) == 0) box.min[axis] -= margin;
-    if (is_flat || (ended_at >> (2 * axis) & 2u) == 0) box.max[axis] += margin;
+    box.min[axis] -= margin;
+    box.max[axis] += margin;
   }
   return box;
 }
