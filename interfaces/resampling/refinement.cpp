@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <queue>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "interfaces/resampling/cell_evaluation.h"
@@ -61,10 +62,7 @@ std::vector<TetrahedronId> Refinement::refine_in_rounds(const std::vector<Tetrah
   const auto next = [&] {
     return rounds.next([&](TetrahedronId t) { return wants_split(t); },
                        [&](TetrahedronId t) { return state_.hierarchy.is_leaf(t); },
-                       [&](const std::vector<TetrahedronId>& leaves) {
-                         parallel_for(leaves.size(), 16,
-                                      [&](std::size_t i) { evaluate_interface(state_, leaves[i]); });
-                       });
+                       [&](const std::vector<TetrahedronId>& leaves) { evaluate_waiting(leaves, forecast); });
   };
   add(cells);
   while (true) {
@@ -83,13 +81,26 @@ std::vector<TetrahedronId> Refinement::refine_in_rounds(const std::vector<Tetrah
     for (const TetrahedronId t : now) {
       if (state_.hierarchy.is_leaf(t)) state_.hierarchy.split(t, splits);
     }
+    std::optional<Parts> parts;
     if (is_foretold()) {
-      report(forecast.begin_round({now.size(), splits.size(), diameter_of(now)}));
-    } else {
-      report({});
+      parts = forecast.begin_round({now.size(), splits.size(), diameter_of(now), rounds.deferred_count()});
     }
-    add(evaluate_splits(splits));
+    if (!parts) report();
+    add(evaluate_splits(splits, parts));
   }
+}
+
+/// Begins a step of refinement with loops of so many items.
+void Refinement::begin_step(const Parts& parts, std::size_t items, std::optional<LoopProgress>& stage) const {
+  stage.emplace(state_.progress, stage_name(),
+                StageWork{.items = static_cast<double>(items), .begin = parts[0], .end = parts[1]});
+}
+
+/// Estimates the errors of leaves that have waited until no other failed.
+void Refinement::evaluate_waiting(const std::vector<TetrahedronId>& leaves, RefinementForecast& forecast) {
+  std::optional<LoopProgress> stage;
+  if (is_foretold() && !leaves.empty()) begin_step(forecast.begin_waiting(), leaves.size(), stage);
+  parallel_for(leaves.size(), 16, [&](std::size_t i) { evaluate_interface(state_, leaves[i]); });
 }
 
 /// Splits one diamond after another, always that with the greatest error, until the budget is spent.
@@ -110,7 +121,7 @@ void Refinement::refine_greedily(const std::vector<TetrahedronId>& cells) {
     const TetrahedronId t(queue.top().second);
     queue.pop();
     if (!wants_split(t)) continue;
-    if (step % 256 == 0) report({});
+    if (step % 256 == 0) report();
     std::vector<Split> splits;
     state_.hierarchy.split(t, splits);
     if (state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra) {
@@ -159,8 +170,9 @@ std::vector<TetrahedronId> Refinement::split_cells(const std::vector<Tetrahedron
 }
 
 /// Evaluates the new vertices and leaves, and informs the observer and the record; returns the leaves
-/// created.
-std::vector<TetrahedronId> Refinement::evaluate_splits(const std::vector<Split>& splits) {
+/// created. `parts`: those of the refinement that are done before and after, where they are foretold.
+std::vector<TetrahedronId> Refinement::evaluate_splits(const std::vector<Split>& splits,
+                                                       const std::optional<Parts>& parts) {
   std::vector<VertexId> vertices;
   std::vector<TetrahedronId> parents, created;
   for (const Split& split : splits) {
@@ -171,6 +183,8 @@ std::vector<TetrahedronId> Refinement::evaluate_splits(const std::vector<Split>&
     }
   }
   sort_unique(vertices);
+  std::optional<LoopProgress> stage;
+  if (parts) begin_step(*parts, vertices.size() + parents.size(), stage);
   evaluate_vertices(state_, vertices);
   parallel_for(parents.size(), 16, [&](std::size_t i) { evaluate_below(state_, parents[i], inner_); });
   if (observer_) observer_(parents, created);
@@ -212,13 +226,15 @@ double Refinement::diameter_of(const std::vector<TetrahedronId>& failing) const 
   return sum / (static_cast<double>(failing.size()) * state_.estimate_target());
 }
 
-/// Reports the part of the refinement that is done, where it is foretold. With a budget, that is the part of
-/// its tetrahedra that are there.
-void Refinement::report(std::optional<double> part) const {
-  const std::string stage = state_.stage(with_fields_ ? "refining fields" : "refining interfaces");
-  if (!state_.options.max_tetrahedra) return state_.progress.step(stage, part.value_or(-1));
+std::string Refinement::stage_name() const {
+  return state_.stage(with_fields_ ? "refining fields" : "refining interfaces");
+}
+
+/// Reports the stage, and with a budget the part of its tetrahedra that are there.
+void Refinement::report() const {
+  if (!state_.options.max_tetrahedra) return state_.progress.step(stage_name(), -1);
   const std::size_t most = *state_.options.max_tetrahedra;
-  state_.progress.step(fmt::format("{} of at most {}", stage, most),
+  state_.progress.step(fmt::format("{} of at most {}", stage_name(), most),
                        static_cast<double>(state_.hierarchy.leaf_count()) / static_cast<double>(most));
 }
 

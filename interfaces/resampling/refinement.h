@@ -2,9 +2,12 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/loop_progress.h"
+#include "interfaces/resampling/refinement_forecast.h"
 #include "interfaces/resampling/resampling_state.h"
 
 namespace adamas::interfaces {
@@ -61,14 +64,19 @@ class Refinement {
   [[nodiscard]] Priority priority(TetrahedronId t) const;
   [[nodiscard]] bool wants_split(TetrahedronId t) const;
   std::vector<TetrahedronId> refine_in_rounds(const std::vector<TetrahedronId>& cells);
+  using Parts = RefinementForecast::Parts;
+  void begin_step(const Parts& parts, std::size_t items, std::optional<LoopProgress>& stage) const;
+  void evaluate_waiting(const std::vector<TetrahedronId>& leaves, RefinementForecast& forecast);
   void refine_greedily(const std::vector<TetrahedronId>& cells);
   std::vector<TetrahedronId> split_cells(const std::vector<TetrahedronId>& cells, bool failing);
-  std::vector<TetrahedronId> evaluate_splits(const std::vector<Split>& splits);
+  std::vector<TetrahedronId> evaluate_splits(const std::vector<Split>& splits,
+                                             const std::optional<Parts>& parts = {});
   void merge_splits(const std::vector<Split>& splits);
   /// Whether a forecast holds: it is one of interfaces, without a budget.
   [[nodiscard]] bool is_foretold() const { return !with_fields_ && !state_.options.max_tetrahedra; }
   [[nodiscard]] double diameter_of(const std::vector<TetrahedronId>& failing) const;
-  void report(std::optional<double> part) const;
+  [[nodiscard]] std::string stage_name() const;
+  void report() const;
 
   ResamplingState& state_;
   bool with_fields_ = false;

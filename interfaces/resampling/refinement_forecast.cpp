@@ -21,19 +21,35 @@ constexpr double kFalling = 0.8;
 constexpr double kConformity = 0.8;
 /// Cells with a smaller diameter, relative to the target, do not fail.
 constexpr double kSmallest = 1.2;
+/// The work of the estimate of a cell that has waited, and that of what follows from it, in splits.
+constexpr double kEstimate = 0.75, kFollowing = 0.7;
 /// The diameter falls by this in each round: the volume is halved.
 const double kHalvedVolume = std::cbrt(0.5);
 
 }  // namespace
 
-std::optional<double> RefinementForecast::begin_round(const Round& round) {
+std::optional<RefinementForecast::Parts> RefinementForecast::begin_round(const Round& round) {
   const auto failing = static_cast<double>(round.failing);
   if (failing_before_ > 0)
     part_failing_ = std::min(1.0, 0.5 * failing / static_cast<double>(failing_before_));
   failing_before_ = round.failing;
-  if (done_ == 0 && (part_failing_ >= kFalling || round.diameter >= kLarge)) return {};
   const auto now = static_cast<double>(round.splits);
-  return std::exchange(done_, done_ + (1 - done_) * now / (now + splits_later(round)));
+  const double splits_before = std::max(1.0, std::exchange(splits_, splits_ + now));
+  if (done_ == 0 && (part_failing_ >= kFalling || round.diameter >= kLarge)) return {};
+  const double later = splits_later(round), rest = now + later;
+  const double waiting = static_cast<double>(round.waiting) * (1 + rest / splits_before);
+  return advance(now / (rest + (kEstimate + kFollowing) * waiting));
+}
+
+RefinementForecast::Parts RefinementForecast::begin_waiting() {
+  return advance(kEstimate / (kEstimate + kFollowing));
+}
+
+/// Adds a step that is a part of what is left.
+RefinementForecast::Parts RefinementForecast::advance(double part) {
+  const double before = done_;
+  done_ += (1 - done_) * part;
+  return {before, done_};
 }
 
 /// Returns how many splits the rounds after this one are expected to make.

@@ -13,6 +13,8 @@ class RefinementRounds {
  public:
   void add(TetrahedronId t, bool deferred) { (deferred ? deferred_ : cells_).push_back(t); }
 
+  /// Returns the number of deferred ones.
+  [[nodiscard]] std::size_t deferred_count() const { return deferred_.size(); }
   /// Returns the tetrahedra that are to be split in the next round, where wants_split(t) holds; none after
   /// the last round. evaluate(leaves) estimates the errors of deferred ones before.
   template <class WantsSplit, class IsLeaf, class Evaluate>

@@ -84,8 +84,8 @@ InterfaceMesh read_surface_between(const GivenSurface& surface) {
   return read_surface(surface.file, surface.front, surface.back);
 }
 
-/// Returns the faces of the box round interfaces at which they end, as bits (domain_faces_at()); 0 if they end
-/// elsewhere too, or at a face but not at the opposite one.
+/// Returns the faces of the box round interfaces at which they end, as bits (domain_faces_at()); 0 if they
+/// end elsewhere too, or at a face but not at the opposite one.
 unsigned faces_ended_at(const InterfaceMesh& mesh, const Box3& box) {
   unsigned ended_at = 0;
   const EdgeFans fans(mesh, nullptr);
