@@ -1,7 +1,6 @@
 #include "interfaces/mesh_reconstruction/mesh_correction.h"
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,16 +9,20 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/disjoint_sets.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "interfaces/mesh_reconstruction/mesh_dispersed.h"
 #include "interfaces/mesh_reconstruction/mesh_errors.h"
 #include "interfaces/mesh_reconstruction/mesh_fit.h"
+#include "interfaces/mesh_reconstruction/mesh_flakes.h"
+#include "interfaces/mesh_reconstruction/mesh_held_cells.h"
+#include "interfaces/mesh_reconstruction/mesh_interfaces.h"
 #include "interfaces/mesh_reconstruction/mesh_start.h"
+#include "interfaces/mesh_reconstruction/mesh_totals.h"
 #include "interfaces/mesh_reconstruction/mesh_volumes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/region_parts.h"  // drop_unused_points
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
@@ -38,9 +41,6 @@ constexpr double kLeastGrowth = 0.5;
 /// Cells whose volumes differ from the fractions by more are named: for sharp ones, and for blurred ones,
 /// where neither the width nor the shape of a step is known so well.
 constexpr double kTolerance = 1e-3, kToleranceBlurred = 0.03;
-/// Totals are closed up to this part of the domain, in at most so many rounds.
-constexpr double kTotalTolerance = 2e-11;
-constexpr int kMostClosings = 30;
 /// Steps that seem less wide, in sizes of cells, may be sharp; they are if values of sharp ones differ from
 /// the fractions by no more than kFits in the mean.
 constexpr double kSurelyBlurred = 0.7, kFits = 0.0015;
@@ -182,13 +182,13 @@ class Correction {
         volumes_(values),
         found_(std::move(steps.widths)),
         extents_(std::move(steps.extents)) {
-    agreement_.volumes = volumes_without(dispersed);
-    agreement_.findings.dispersed = std::move(dispersed);
+    result_.agreement.volumes = volumes_without(dispersed);
+    result_.agreement.findings.dispersed = std::move(dispersed);
   }
 
   /// `known`: whether the widths are known to be right. `error`: the standard deviation of errors of
   /// fractions, where that is known.
-  MeshAgreement run(bool known, const std::optional<double>& error) {
+  MeshReconstruction run(bool known, const std::optional<double>& error) {
     const double widest = found_.empty() ? 0 : *std::ranges::max_element(found_);
     // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
     const bool unsure = widest < kSurelyBlurred && !known;
@@ -205,16 +205,16 @@ class Correction {
     }
     if (deviation > SiteValues::kLeastError) smooth(deviation);
     correct();
-    if (unsure && deviation_ == 0 && agreement_.cells.mean_difference > kFits) {
+    if (unsure && deviation_ == 0 && result_.agreement.cells.mean_difference > kFits) {
       start(found_);
       correct();
     }
-    agreement_.findings.fraction_error = error.value_or(deviation_);
-    if (values_.active_cells().empty()) return agreement_;
-    close_totals();
-    measure(false);
+    result_.agreement.findings.fraction_error = error.value_or(deviation_);
+    const std::vector<VolumeMove> moves = extract();
+    if (values_.active_cells().empty()) return std::move(result_);
+    measure(false, moves);
     find_lost();
-    return agreement_;
+    return std::move(result_);
   }
 
  private:
@@ -243,7 +243,7 @@ class Correction {
   }
 
   [[nodiscard]] double deviation_of_errors() const {
-    return errors_->deviation(agreement_.findings.blur_median);
+    return errors_->deviation(result_.agreement.findings.blur_median);
   }
 
   /// Smooths values and fractions within the errors of the fractions.
@@ -282,29 +282,33 @@ class Correction {
     for (int round = 0; round <= kRoundsBlurred; ++round) {
       progress_.step("correcting volumes", static_cast<double>(round) / kRoundsBlurred);
       measure(true);
-      if (agreement_.cells.mean_difference >= before) {
+      if (result_.agreement.cells.mean_difference >= before) {
         restore(best);
         return measure(false);
       }
       if (round == kRoundsBlurred) return;
-      before = agreement_.cells.mean_difference;
+      before = result_.agreement.cells.mean_difference;
       best = kept();
       move();
     }
   }
 
-  /// Measures parts of cells and, if they are to be compared, those that blurred fractions show, and how far
-  /// they are from the fractions.
-  void measure(bool growth, bool compared = true) {
+  /// Measures parts of cells, those that blurred fractions show, and how far they are from the fractions
+  /// after these moves.
+  void measure(bool growth, const std::vector<VolumeMove>& moves = {}) {
     values_.interpolate();
     volumes_.measure(growth);
     const std::vector<Index>& active = values_.active_cells();
     shown_.clear();
     for (std::size_t n = 0; n < active.size(); ++n)
       shown_.insert(shown_.end(), volumes_.parts(n).begin(), volumes_.parts(n).end());
-    if (diffusion_ && compared) diffusion_->run(shown_);
-    if (!compared) return;
-    CellAgreement& found = agreement_.cells;
+    if (diffusion_) diffusion_->run(shown_);
+    std::map<std::pair<Index, MaterialId>, double> gained;
+    for (const auto& [cell, from, to, part] : moves) {
+      gained[{cell, from}] -= part;
+      gained[{cell, to}] += part;
+    }
+    CellAgreement& found = result_.agreement.cells;
     found = {.tolerance = std::max(diffusion_ ? kToleranceBlurred : kTolerance, 3 * deviation_)};
     double sum = 0;
     std::size_t at = 0;
@@ -313,7 +317,12 @@ class Correction {
       bool is_mixed = false;
       for (const Entry& entry : std::as_const(values_).at(c)) {
         const float given = given_.empty() ? entry.fraction : given_[at];
-        off = std::max(off, std::abs(shown_[at++] - static_cast<double>(given)));
+        double shown = shown_[at++];
+        if (!gained.empty()) {
+          const auto found_move = gained.find({c, values_.material(entry.material)});
+          if (found_move != gained.end()) shown += found_move->second;
+        }
+        off = std::max(off, std::abs(shown - static_cast<double>(given)));
         is_mixed = is_mixed || (entry.fraction > 0 && entry.fraction < 1);
       }
       if (!is_mixed) {
@@ -327,15 +336,15 @@ class Correction {
       found.cells_off += off > found.tolerance ? 1 : 0;
     }
     found.mean_difference = found.mixed_cells > 0 ? sum / static_cast<double>(found.mixed_cells) : 0;
-    agreement_.findings.mixed_cells = found.mixed_cells;
-    agreement_.findings.cells_off = found.cells_off;
-    agreement_.findings.tolerance = found.tolerance;
-    agreement_.findings.greatest_difference = found.greatest_difference;
+    result_.agreement.findings.mixed_cells = found.mixed_cells;
+    result_.agreement.findings.cells_off = found.cells_off;
+    result_.agreement.findings.tolerance = found.tolerance;
+    result_.agreement.findings.greatest_difference = found.greatest_difference;
   }
 
   /// Sets the findings about widths of steps in mixed cells.
   void find_blur() {
-    FractionFindings& findings = agreement_.findings;
+    FractionFindings& findings = result_.agreement.findings;
     findings = {.dispersed = std::move(findings.dispersed)};
     std::vector<double> of_cells;
     std::size_t mixed = 0;
@@ -448,129 +457,50 @@ class Correction {
     }
   }
 
-  /// Finds the groups of cells that share points and hold a material of which no part is shown there.
-  void find_lost() {
-    struct Group {
-      LostPlace place;
-      bool shown = false;
+  /// Extracts interfaces without flakes. Returns what cells of the flakes' neighbours get.
+  std::vector<VolumeMove> extract() {
+    const auto find = [&] { return find_flakes(data_, values_, result_.mesh, result_.bodies); };
+    const auto close = [&](const IdVector<MaterialId, double>& wanted) {
+      IdVector<MaterialId, double> volumes =
+          close_totals(data_, wanted, values_, volumes_, progress_);
+      result_.mesh = interfaces_of_values(data_, values_, progress_);
+      result_.bodies = find_bodies(result_.mesh, &data_.mesh.box());
+      return volumes;
     };
-    const PolyhedralMesh& mesh = data_.mesh;
-    const std::vector<Index>& active = values_.active_cells();
-    std::vector<std::uint32_t> firsts{0}, place(mesh.cell_count(), kNone);
-    for (std::uint32_t n = 0; n < active.size(); ++n) {
-      place[active[n]] = n;
-      firsts.push_back(firsts.back() + static_cast<std::uint32_t>(values_.at(active[n]).size()));
-    }
-    const auto holds = [](const Entry& entry) { return entry.fraction > kFractionTrace; };
-    DisjointSets sets(firsts.back());
-    std::vector<std::uint32_t> first_of_material(values_.material_count(), kNone);
-    for (std::size_t p = 0; p < mesh.points().size(); ++p) {
-      for (const bool joins : {true, false}) {
-        for (const Index c : mesh.cells_round(p)) {
-          if (place[c] == kNone) continue;
-          const std::span<const Entry> own = std::as_const(values_).at(c);
-          for (std::uint32_t e = 0; e < own.size(); ++e) {
-            if (!holds(own[e])) continue;
-            std::uint32_t& first = first_of_material[own[e].material];
-            const std::uint32_t here = firsts[place[c]] + e;
-            if (!joins) {
-              first = kNone;
-            } else if (first == kNone) {
-              first = here;
-            } else {
-              sets.join(first, here);
-            }
-          }
-        }
-      }
-    }
-    const std::vector<std::uint32_t> roots = std::move(sets).roots();
-    std::map<std::uint32_t, Group> groups;
-    for (std::uint32_t n = 0; n < active.size(); ++n) {
-      const std::span<const Entry> own = std::as_const(values_).at(active[n]);
-      for (std::uint32_t e = 0; e < own.size(); ++e) {
-        if (!holds(own[e])) continue;
-        Group& group = groups[roots[firsts[n] + e]];
-        const auto fraction = static_cast<double>(own[e].fraction);
-        const double volume = fraction * mesh.cell_volume(active[n]);
-        group.shown = group.shown || volumes_.parts(n)[e] > 0;
-        group.place.material = values_.material(own[e].material).value;
-        group.place.volume += volume;
-        ++group.place.cells;
-        group.place.greatest_fraction = std::max(group.place.greatest_fraction, fraction);
-        group.place.place += volume * mesh.cell_center(active[n]);
-      }
-    }
-    for (auto& [root, group] : groups) {
-      if (group.shown || !(group.place.volume > 0)) continue;
-      group.place.place *= 1 / group.place.volume;
-      group.place.within_one_step = group.place.greatest_fraction <= data_.report.step;
-      agreement_.lost.push_back(group.place);
-    }
+    const IdVector<MaterialId, double>& wanted = result_.agreement.volumes;
+    IdVector<MaterialId, double> given = close(wanted);
+    double domain = 0;
+    for (const double volume : given) domain += volume;
+    const std::vector<Flake> flakes = settle_flakes(wanted, domain, find, close, given);
+    drop_flakes(flakes, result_.mesh, result_.bodies.sides, result_.bodies.materials);
+    drop_unused_points(result_.mesh);
+    std::vector<VolumeMove> moves;
+    for (const Flake& flake : flakes) moves.push_back(flake.move);
+    return moves;
   }
 
-  /// Moves all values of each material by one offset until it has its volume.
-  void close_totals() {
-    const std::size_t count = values_.material_count();
-    const IdVector<MaterialId, double>& wanted = agreement_.volumes;
-    const PolyhedralMesh& mesh = data_.mesh;
+  /// Finds the groups of cells that hold a material of which no part is shown there.
+  void find_lost() {
     const std::vector<Index>& active = values_.active_cells();
-    double domain = 0;
-    for (std::size_t c = 0; c < mesh.cell_count(); ++c) domain += mesh.cell_volume(c);
-    std::vector<char> is_active(mesh.cell_count(), 0);
-    for (const Index c : active) is_active[c] = 1;
-    std::vector<double> sole(count, 0);
-    for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-      if (is_active[c] == 0) sole[values_.sole(c)] += mesh.cell_volume(c);
-    }
-    for (int round = 0; round < kMostClosings; ++round) {
-      progress_.step("closing volumes", static_cast<double>(round) / kMostClosings);
-      measure(true, false);
-      std::vector<double> owned = sole;
-      std::map<std::pair<std::uint16_t, std::uint16_t>, double> exchanged;
-      for (std::size_t n = 0; n < active.size(); ++n) {
-        const double volume = mesh.cell_volume(active[n]);
-        const std::span<const Entry> own = std::as_const(values_).at(active[n]);
-        for (std::size_t e = 0; e < own.size(); ++e) owned[own[e].material] += volume * volumes_.parts(n)[e];
-        for (const auto& exchange : volumes_.exchanges(n))
-          exchanged[{exchange.first, exchange.second}] += volume * exchange.growth;
+    const MeshHeldCells held(values_);
+    for (std::uint32_t group = 0; group < held.group_count(); ++group) {
+      LostPlace lost;
+      bool shown = false;
+      for (const auto& [n, e] : held.places(group)) {
+        const Entry& entry = std::as_const(values_).at(active[n])[e];
+        const auto fraction = static_cast<double>(entry.fraction);
+        const double volume = fraction * data_.mesh.cell_volume(active[n]);
+        shown = shown || volumes_.parts(n)[e] > 0;
+        lost.material = values_.material(entry.material).value;
+        lost.volume += volume;
+        ++lost.cells;
+        lost.greatest_fraction = std::max(lost.greatest_fraction, fraction);
+        lost.place += volume * data_.mesh.cell_center(active[n]);
       }
-      // The unknowns are the offsets of materials that have interfaces.
-      std::vector<int> unknown(count, -1);
-      for (const auto& [pair, by] : exchanged) unknown[pair.first] = unknown[pair.second] = 0;
-      int size = 0;
-      for (int& of_one : unknown) of_one = of_one == 0 ? size++ : -1;
-      double most_missing = 0;
-      Eigen::VectorXd missing(size);
-      for (std::size_t m = 0; m < count; ++m) {
-        const double own = wanted[values_.material(static_cast<std::uint16_t>(m))] - owned[m];
-        most_missing = std::max(most_missing, std::abs(own));
-        if (unknown[m] >= 0) missing[unknown[m]] = own;
-      }
-      if (most_missing <= kTotalTolerance * domain || size == 0) return;
-      missing.array() -= missing.mean();
-      std::vector<Eigen::Triplet<double>> triplets;
-      double greatest = 0;
-      for (const auto& [pair, by] : exchanged) {
-        const int a = unknown[pair.first], b = unknown[pair.second];
-        triplets.emplace_back(a, a, by), triplets.emplace_back(b, b, by);
-        triplets.emplace_back(a, b, -by), triplets.emplace_back(b, a, -by);
-        greatest = std::max(greatest, by);
-      }
-      if (!(greatest > 0)) return;
-      for (int m = 0; m < size; ++m) triplets.emplace_back(m, m, 1e-9 * greatest);
-      Eigen::SparseMatrix<double> growth(size, size);
-      growth.setFromTriplets(triplets.begin(), triplets.end());
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth);
-      Eigen::VectorXd offsets = solver.solve(missing);
-      offsets.array() -= offsets.mean();
-      for (const Index c : active) {
-        const double most = kMostMove * values_.size(c);
-        for (Entry& entry : values_.at(c)) {
-          if (unknown[entry.material] >= 0)
-            entry.value += std::clamp(offsets[unknown[entry.material]], -most, most);
-        }
-      }
+      if (shown || !(lost.volume > 0)) continue;
+      lost.place *= 1 / lost.volume;
+      lost.within_one_step = lost.greatest_fraction <= data_.report.step;
+      result_.agreement.lost.push_back(lost);
     }
   }
 
@@ -587,7 +517,7 @@ class Correction {
   double deviation_ = 0;       // of errors of fractions, if they were smoothed
   std::vector<float> given_;   // by entry of active cells: fractions before they were smoothed
   std::vector<double> shown_;  // by entry of active cells
-  MeshAgreement agreement_;
+  MeshReconstruction result_;
 };
 
 /// Makes materials sharp that have at most half of every cell, as a thin film: blurred, they would own
@@ -614,8 +544,8 @@ void set_faint_sharp(const MeshValues& values, std::vector<double>& widths) {
 
 }  // namespace
 
-MeshAgreement correct_values(const MeshData& data, const FractionOptions& options, MeshValues& values,
-                             Progress& progress) {
+MeshReconstruction reconstruct_fractions(const MeshData& data, const FractionOptions& options,
+                                         MeshValues& values, Progress& progress) {
   MeshWalls walls;
   Steps steps = find_steps(data, walls, values);
   std::vector<double> dispersed(data.materials.size(), 0);

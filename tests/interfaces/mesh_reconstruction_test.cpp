@@ -138,6 +138,28 @@ TEST(MeshReconstruction, ABallOnTetrahedraIsInOnePiece) {
   EXPECT_LT(found.agreement.cells.mean_difference, 3e-4);
 }
 
+/// Three regions that meet in a line, one of them reflex: each is one body, and the pieces that correction
+/// cuts off where they meet are none, as on grids.
+TEST(MeshReconstruction, FlakesOnTetrahedraAreNoBodies) {
+  constexpr std::uint32_t kCells = 6;
+  const Vec3 line = normalized(Vec3{0.3, 0.5, 1}), across = normalized(cross(line, {1, 0.2, 0.1})),
+             up = cross(line, across);
+  for (const Vec3& origin : {Vec3{0.52, 0.47, 0.51}, {0.44, 0.55, 0.49}, {0.5, 0.46, 0.53}}) {
+    const auto material_at = [&](const Vec3& p) -> std::size_t {
+      const double angle = std::atan2(dot(p - origin, up), dot(p - origin, across));
+      return angle < 0 || angle > 2 * M_PI / 3 ? 0 : angle < M_PI / 3 ? 1 : 2;
+    };
+    const MeshData data = test::sampled_materials(
+        test::to_tetrahedra(make_hexahedra(
+            {kCells, kCells, kCells}, [](const Vec3& p) { return jittered(p, 0.2 / kCells); })),
+        3, material_at, 4);
+    const MeshReconstruction found = reconstruct_mesh(data);
+    expect_volumes(data, found.mesh);
+    EXPECT_EQ(found.bodies.materials.size(), 3u);
+    EXPECT_EQ(bodies_of(found.mesh, data.mesh.box()), 3u);
+  }
+}
+
 TEST(MeshReconstruction, TheBoundaryOfWhatIsNoBoxIsAnInterface) {
   const auto ball = [](const Vec3& p) { return 0.4 - distance(p, {1.1, 1.0, 0.9}); };
   const MeshData data = sampled_data(tube(6), ball);
