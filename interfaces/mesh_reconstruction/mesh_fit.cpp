@@ -131,11 +131,7 @@ class Fit {
     system_.blocks.resize((active.size() + kBlock - 1) / kBlock);
     parallel_chunks(active.size(), kBlock, [&](std::size_t begin, std::size_t end) {
       VolumeSystem::Block& block = system_.blocks[begin / kBlock];
-      block.exchanges.clear();
-      block.coefficients.clear();
-      block.first_row = first_rows_[begin];
-      block.last_row = first_rows_[end];
-      block.cells_off = 0;
+      block.clear(first_rows_[begin], first_rows_[end]);
       for (std::size_t n = begin; n < end; ++n) {
         block.cells_off += set_missing(n) > kCellOff ? 1 : 0;
         for (const MeshVolumes::Exchange& exchange : volumes_.exchanges(n)) add_exchange(n, exchange, block);
