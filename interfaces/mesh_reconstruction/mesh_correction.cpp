@@ -50,6 +50,8 @@ constexpr double kDiffusionStep = 0.4;
 constexpr double kMostDiffusions = 64;
 /// Centres of cells are taken to be at least this far apart, in sizes of cells.
 constexpr double kLeastDistance = 1e-6;
+/// A cell that shows nothing of a material is a hole if more than this part of it should, blurred alike.
+constexpr double kHole = 0.25;
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// Smooths parts of cells as a Gaussian does, by diffusion between neighbours. At the boundary parts are
@@ -173,11 +175,12 @@ class Diffusion {
 class Correction {
  public:
   /// `dispersed`: the volumes that were taken out, by material of the data.
-  Correction(const MeshData& data, MeshValues& values, MeshWalls walls, Steps steps,
+  Correction(const MeshData& data, MeshValues& values, MeshWalls walls, MeshFilms films, Steps steps,
              std::vector<double> dispersed, Progress& progress)
       : data_(data),
         values_(values),
         walls_(std::move(walls)),
+        films_(std::move(films)),
         progress_(progress),
         volumes_(values),
         found_(std::move(steps.widths)),
@@ -191,7 +194,7 @@ class Correction {
   MeshReconstruction run(bool known, const std::optional<double>& error) {
     const double widest = found_.empty() ? 0 : *std::ranges::max_element(found_);
     // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
-    const bool unsure = widest < kSurelyBlurred && !known;
+    const bool unsure = widest > 0 && widest < kSurelyBlurred && !known;
     const std::vector<double> sharp(found_.size(), 0.0);
     start(unsure ? sharp : found_);
     double deviation = error ? *error : deviation_of_errors();
@@ -224,11 +227,16 @@ class Correction {
     if (std::ranges::all_of(dispersed, [](double volume) { return volume == 0; })) return volumes;
     for (MaterialId m(0); m.value < volumes.size(); ++m.value) volumes[m] -= dispersed[m.value];
     for (std::size_t c = 0; c < data_.mesh.cell_count(); ++c) {
-      for (const Entry& entry : std::as_const(values_).at(c)) {
+      const double volume = data_.mesh.cell_volume(c);
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      for (const Entry& entry : own) {
         if (entry.fraction <= 0) continue;
         const MaterialId m = values_.material(entry.material);
-        volumes[m] += data_.mesh.cell_volume(c) *
-                      (static_cast<double>(entry.fraction) - static_cast<double>(data_.fraction(m, c)));
+        volumes[m] += volume * static_cast<double>(entry.fraction);
+        const bool counted = std::any_of(own.data(), &entry, [&](const Entry& other) {
+          return other.fraction > 0 && values_.material(other.material) == m;
+        });
+        if (!counted) volumes[m] -= volume * static_cast<double>(data_.fraction(m, c));
       }
     }
     return volumes;
@@ -237,9 +245,9 @@ class Correction {
   /// Sets the values from which those of steps of these widths are corrected.
   void start(const std::vector<double>& widths) {
     widths_ = widths;
-    set_start_values(data_, widths, extents_, walls_, values_);
+    set_start_values(widths, extents_, films_, walls_, values_);
     find_blur();
-    errors_.emplace(widths_, extents_, values_);
+    errors_.emplace(widths_, extents_, films_, values_);
   }
 
   [[nodiscard]] double deviation_of_errors() const {
@@ -311,20 +319,27 @@ class Correction {
     CellAgreement& found = result_.agreement.cells;
     found = {.tolerance = std::max(diffusion_ ? kToleranceBlurred : kTolerance, 3 * deviation_)};
     double sum = 0;
-    std::size_t at = 0;
+    std::size_t first = 0;
+    std::vector<double> differences;
     for (const Index c : active) {
-      double off = 0;
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      differences.assign(own.size(), 0);
       bool is_mixed = false;
-      for (const Entry& entry : std::as_const(values_).at(c)) {
-        const float given = given_.empty() ? entry.fraction : given_[at];
-        double shown = shown_[at++];
-        if (!gained.empty()) {
-          const auto found_move = gained.find({c, values_.material(entry.material)});
-          if (found_move != gained.end()) shown += found_move->second;
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        const float given = given_.empty() ? own[e].fraction : given_[first + e];
+        double shown = shown_[first + e];
+        if (own[e].fraction > 0 && own[e].fraction < 1) is_mixed = true;
+        // Regions of a material count together.
+        const std::size_t row = first_of_material(values_, own, own[e].material);
+        if (row == e && !gained.empty()) {
+          const auto gain = gained.find({c, values_.material(own[e].material)});
+          if (gain != gained.end()) shown += gain->second;
         }
-        off = std::max(off, std::abs(shown - static_cast<double>(given)));
-        is_mixed = is_mixed || (entry.fraction > 0 && entry.fraction < 1);
+        differences[row] += shown - static_cast<double>(given);
       }
+      first += own.size();
+      double off = 0;
+      for (const double difference : differences) off = std::max(off, std::abs(difference));
       if (!is_mixed) {
         found.full_cells_off += off > kTolerance ? 1 : 0;
         found.greatest_in_full_cell = std::max(found.greatest_in_full_cell, off);
@@ -479,34 +494,59 @@ class Correction {
     return moves;
   }
 
-  /// Finds the groups of cells that hold a material of which no part is shown there.
+  /// Finds the groups of cells that hold a material of which no part is shown there, and such holes in what
+  /// others show.
   void find_lost() {
-    const std::vector<Index>& active = values_.active_cells();
     const MeshHeldCells held(values_);
     for (std::uint32_t group = 0; group < held.group_count(); ++group) {
-      LostPlace lost;
-      bool shown = false;
-      for (const auto& [n, e] : held.places(group)) {
-        const Entry& entry = std::as_const(values_).at(active[n])[e];
-        const auto fraction = static_cast<double>(entry.fraction);
-        const double volume = fraction * data_.mesh.cell_volume(active[n]);
-        shown = shown || volumes_.parts(n)[e] > 0;
-        lost.material = values_.material(entry.material).value;
-        lost.volume += volume;
-        ++lost.cells;
-        lost.greatest_fraction = std::max(lost.greatest_fraction, fraction);
-        lost.place += volume * data_.mesh.cell_center(active[n]);
-      }
-      if (shown || !(lost.volume > 0)) continue;
-      lost.place *= 1 / lost.volume;
-      lost.within_one_step = lost.greatest_fraction <= data_.report.step;
-      result_.agreement.lost.push_back(lost);
+      const auto is_shown = [&](const MeshHeldCells::Place& place) { return part(place) > 0; };
+      if (std::ranges::none_of(held.places(group), is_shown)) add_lost(held.places(group));
     }
+    std::vector<std::size_t> firsts{0};
+    for (const Index c : values_.active_cells())
+      firsts.push_back(firsts.back() + std::as_const(values_).at(c).size());
+    const MeshHeldCells holes(values_, [&](const MeshHeldCells::Place& place) {
+      const Entry& entry = this->entry(place);
+      if (values_.is_part(entry.material) || part(place) > 0) return false;
+      return static_cast<double>(entry.fraction) > shown_[firsts[place.n] + place.entry] + kHole;
+    });
+    for (std::uint32_t group = 0; group < holes.group_count(); ++group) {
+      // What is lost as a whole is known.
+      const MeshHeldCells::Place first = holes.places(group)[0];
+      const std::uint32_t of_first = held.group(values_.active_cells()[first.n], entry(first).material);
+      if (std::ranges::any_of(held.places(of_first), [&](const auto& place) { return part(place) > 0; }))
+        add_lost(holes.places(group));
+    }
+  }
+  [[nodiscard]] const Entry& entry(const MeshHeldCells::Place& place) const {
+    return std::as_const(values_).at(values_.active_cells()[place.n])[place.entry];
+  }
+  [[nodiscard]] double part(const MeshHeldCells::Place& place) const {
+    return volumes_.parts(place.n)[place.entry];
+  }
+
+  void add_lost(std::span<const MeshHeldCells::Place> places) {
+    LostPlace lost;
+    for (const MeshHeldCells::Place& place : places) {
+      const Index cell = values_.active_cells()[place.n];
+      const auto fraction = static_cast<double>(entry(place).fraction);
+      const double volume = fraction * data_.mesh.cell_volume(cell);
+      lost.material = values_.material(entry(place).material).value;
+      lost.volume += volume;
+      ++lost.cells;
+      lost.greatest_fraction = std::max(lost.greatest_fraction, fraction);
+      lost.place += volume * data_.mesh.cell_center(cell);
+    }
+    if (!(lost.volume > 0)) return;
+    lost.place *= 1 / lost.volume;
+    lost.within_one_step = lost.greatest_fraction <= data_.report.step;
+    result_.agreement.lost.push_back(lost);
   }
 
   const MeshData& data_;
   MeshValues& values_;
   MeshWalls walls_;
+  MeshFilms films_;
   Progress& progress_;
   MeshVolumes volumes_;
   std::vector<double> found_, extents_;  // widths and extents (Steps)
@@ -547,22 +587,24 @@ void set_faint_sharp(const MeshValues& values, std::vector<double>& widths) {
 MeshReconstruction reconstruct_fractions(const MeshData& data, const FractionOptions& options,
                                          MeshValues& values, Progress& progress) {
   MeshWalls walls;
-  Steps steps = find_steps(data, walls, values);
+  MeshFilms films;
+  Steps steps = find_steps(walls, films, values);
   std::vector<double> dispersed(data.materials.size(), 0);
   if (!options.keep_dispersed) dispersed = take_dispersed(steps.widths, values);
-  if (std::ranges::any_of(dispersed, [](double volume) { return volume > 0; }))
-    steps = find_steps(data, walls, values);
+  films = MeshFilms(values);
+  if (films.any() || std::ranges::any_of(dispersed, [](double volume) { return volume > 0; }))
+    steps = find_steps(walls, films, values);
   set_faint_sharp(values, steps.widths);
   const auto is_blurred = [](double width) { return width >= kSurelyBlurred; };
   if (std::ranges::any_of(steps.widths, is_blurred)) walls = MeshWalls(values);
   if (walls.any()) {
-    steps = find_steps(data, walls, values);
+    steps = find_steps(walls, films, values);
     set_faint_sharp(values, steps.widths);
   }
   const std::optional<double> known = options.known_blur();
   if (known)
     steps.widths.assign(steps.widths.size(), *known > 0 ? std::sqrt(*known * *known + kCellVariance) : 0);
-  return Correction(data, values, std::move(walls), std::move(steps), std::move(dispersed), progress)
+  return Correction(data, values, std::move(walls), std::move(films), std::move(steps), std::move(dispersed), progress)
       .run(known.has_value(), options.known_error());
 }
 

@@ -30,15 +30,16 @@ class MeshFlakeCells : public FlakeCells {
   [[nodiscard]] double volume(std::uint32_t cell) const override { return mesh_.cell_volume(cell); }
   [[nodiscard]] bool is_outside(MaterialId material) const override { return material == outside_; }
   [[nodiscard]] std::uint32_t group(std::uint32_t cell, MaterialId material) const override {
-    std::uint16_t number = 0;
-    while (values_.material(number) != material) ++number;
-    std::uint32_t found = held().group(cell, number);
     std::vector<std::uint32_t> ring;
     values_.subdivision().find_ring(std::array{cell}, ring);
-    for (const std::uint32_t other : ring) {
-      if (found == kNone) found = held().group(other, number);
+    ring.insert(ring.begin(), cell);
+    for (const std::uint32_t each : ring) {
+      for (const Entry& entry : values_.at(each)) {
+        if (values_.material(entry.material) != material) continue;
+        if (const std::uint32_t group = held().group(each, entry.material); group != kNone) return group;
+      }
     }
-    return found;
+    return kNone;
   }
   void for_each_fraction(std::uint32_t group, const std::function<void(double)>& visit) const override {
     for (const auto& [n, entry] : held().places(group))

@@ -10,11 +10,9 @@ namespace {
 
 using Entry = MeshValues::Entry;
 
-bool holds(const Entry& entry) { return entry.fraction > kFractionTrace; }
-
 }  // namespace
 
-MeshHeldCells::MeshHeldCells(const MeshValues& values)
+MeshHeldCells::MeshHeldCells(const MeshValues& values, const std::function<bool(const Place&)>& chooses)
     : values_(values), place_of_cell_(values.subdivision().mesh().cell_count(), kNone), firsts_{0} {
   const PolyhedralMesh& mesh = values.subdivision().mesh();
   const std::vector<Index>& active = values.active_cells();
@@ -22,6 +20,9 @@ MeshHeldCells::MeshHeldCells(const MeshValues& values)
     place_of_cell_[active[n]] = n;
     firsts_.push_back(firsts_.back() + static_cast<std::uint32_t>(values.at(active[n]).size()));
   }
+  const auto holds = [&](const Place& place, const Entry& entry) {
+    return entry.fraction > kFractionTrace && (!chooses || chooses(place));
+  };
   DisjointSets sets(firsts_.back());
   std::vector<std::uint32_t> first_of_material(values.material_count());
   for (std::size_t p = 0; p < mesh.points().size(); ++p) {
@@ -30,8 +31,8 @@ MeshHeldCells::MeshHeldCells(const MeshValues& values)
       if (place_of_cell_[c] == kNone) continue;
       const std::span<const Entry> own = values.at(c);
       for (std::uint32_t e = 0; e < own.size(); ++e) {
-        if (!holds(own[e])) continue;
-        std::uint32_t& first = first_of_material[own[e].material];
+        if (!holds({place_of_cell_[c], e}, own[e])) continue;
+        std::uint32_t& first = first_of_material[values.whole(own[e].material)];
         const std::uint32_t here = firsts_[place_of_cell_[c]] + e;
         if (first == kNone) first = here;
         sets.join(first, here);
@@ -45,7 +46,7 @@ MeshHeldCells::MeshHeldCells(const MeshValues& values)
     for (std::uint32_t n = 0; n < active.size(); ++n) {
       const std::span<const Entry> own = values.at(active[n]);
       for (std::uint32_t e = 0; e < own.size(); ++e) {
-        if (holds(own[e])) visit(Place{n, e}, firsts_[n] + e);
+        if (holds({n, e}, own[e])) visit(Place{n, e}, firsts_[n] + e);
       }
     }
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -8,21 +9,23 @@
 
 namespace adamas::interfaces {
 
-/// The connected groups of cells that hold more than kFractionTrace of a material; cells are connected by
-/// points. Cells that a material fills, with no other material near, are in no group.
+/// The connected groups of cells that hold more than kFractionTrace of a material, or of those of these that
+/// are chosen; cells are connected by points. Cells that a material fills, with no other material near, are in
+/// no group. Regions of a material belong together.
 class MeshHeldCells {
  public:
   using Index = MeshSubdivision::Index;
   static constexpr std::uint32_t kNone = 0xffffffffu;
-
-  /// Finds the groups. The values must outlive this object.
-  explicit MeshHeldCells(const MeshValues& values);
 
   /// An entry, of a cell, of a group's material.
   struct Place {
     std::uint32_t n;      ///< the cell's place among active ones
     std::uint32_t entry;  ///< among those of the cell
   };
+
+  /// Finds the groups. `chooses`: whether an entry counts; null if all do. The values must outlive this object.
+  explicit MeshHeldCells(const MeshValues& values, const std::function<bool(const Place&)>& chooses = {});
+
   /// The places of each group, ascending. Groups are in the order of their first places.
   [[nodiscard]] std::size_t group_count() const { return first_places_.size() - 1; }
   [[nodiscard]] std::span<const Place> places(std::uint32_t group) const {

@@ -20,7 +20,7 @@ constexpr int kMostRounds = 30;
 /// A value moves by at most this part of a cell's size in a round.
 constexpr double kMostMove = 0.2;
 
-/// What two materials exchange, by derivatives with respect to the difference of their offsets.
+/// What two materials exchange, by their first numbers, by derivatives with respect to the difference of their offsets.
 using Exchanges = std::map<std::pair<std::uint16_t, std::uint16_t>, double>;
 
 /// Returns the offsets, by material, that give materials with interfaces the volumes that are missing, to
@@ -72,7 +72,7 @@ IdVector<MaterialId, double> close_totals(const MeshData& data, const IdVector<M
   for (const Index c : active) is_active[c] = 1;
   std::vector<double> sole(count, 0);
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    if (is_active[c] == 0) sole[values.sole(c)] += mesh.cell_volume(c);
+    if (is_active[c] == 0) sole[values.whole(values.sole(c))] += mesh.cell_volume(c);
   }
   for (int round = 0;; ++round) {
     progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
@@ -83,13 +83,17 @@ IdVector<MaterialId, double> close_totals(const MeshData& data, const IdVector<M
     for (std::size_t n = 0; n < active.size(); ++n) {
       const double volume = mesh.cell_volume(active[n]);
       const std::span<const Entry> own = std::as_const(values).at(active[n]);
-      for (std::size_t e = 0; e < own.size(); ++e) owned[own[e].material] += volume * volumes.parts(n)[e];
-      for (const auto& exchange : volumes.exchanges(n))
-        exchanged[{exchange.first, exchange.second}] += volume * exchange.growth;
+      for (std::size_t e = 0; e < own.size(); ++e)
+        owned[values.whole(own[e].material)] += volume * volumes.parts(n)[e];
+      for (const auto& exchange : volumes.exchanges(n)) {
+        const std::uint16_t a = values.whole(exchange.first), b = values.whole(exchange.second);
+        if (a != b) exchanged[{std::min(a, b), std::max(a, b)}] += volume * exchange.growth;
+      }
     }
-    IdVector<MaterialId, double> result(count);
+    IdVector<MaterialId, double> result(wanted.size());
     double most_missing = 0;
     for (std::uint16_t m = 0; m < count; ++m) {
+      if (values.whole(m) != m) continue;
       result[values.material(m)] = owned[m];
       missing[m] = wanted[values.material(m)] - owned[m];
       most_missing = std::max(most_missing, std::abs(missing[m]));
@@ -99,7 +103,7 @@ IdVector<MaterialId, double> close_totals(const MeshData& data, const IdVector<M
     if (offsets.empty()) return result;
     for (const Index c : active) {
       const double most = kMostMove * values.size(c);
-      for (Entry& entry : values.at(c)) entry.value += std::clamp(offsets[entry.material], -most, most);
+      for (Entry& entry : values.at(c)) entry.value += std::clamp(offsets[values.whole(entry.material)], -most, most);
     }
   }
 }
