@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -679,17 +680,24 @@ void tighten_distance_bound(const TriangleList& triangles, const ClosestPointTre
                    [&](auto a, auto b) { return bound.triangle_upper[a] > bound.triangle_upper[b]; });
   // The greatest distance is likely to be found on the first triangles; then others need no examination.
   std::vector<std::uint32_t> some;
+  std::vector<double> before;
   for (std::size_t first = 0, count = kFirstTriangles; first < loose.size(); first += count, count *= 4) {
     some.clear();
+    before.clear();
     for (std::size_t i = first; i < std::min(first + count, loose.size()); ++i) {
       if (!is_loose(loose[i])) continue;
       some.push_back(loose[i]);
-      bound.triangle_upper[loose[i]] = 0;
+      before.push_back(std::exchange(bound.triangle_upper[loose[i]], 0));
     }
     if (some.empty()) continue;
     HausdorffOptions for_some = options;
     for_some.most_pieces = options.most_pieces / loose.size() * some.size();
     bound_triangles(triangles, some, {to}, for_some, progress, bound);
+    // Bounds from before hold too, and may be the tighter ones.
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      double& upper = bound.triangle_upper[some[i]];
+      upper = std::min(upper, before[i]);
+    }
   }
   bound.upper = greatest_of(bound.triangle_upper);
 }

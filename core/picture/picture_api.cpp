@@ -39,7 +39,8 @@ void check_slice(const Slice& slice) {
 }
 
 Colour area_colour(const Slice& slice, const DrawingOptions& options, std::size_t material) {
-  return colour_of(options, slice.materials, material, material_area_colour);
+  if (material >= slice.materials.size()) return material_area_colour(material);
+  return colour_of(options.colours, slice.materials[material], material, material_area_colour);
 }
 
 SlicePanel to_panel(const Slice& slice, const PlaneFrame& frame, const DrawingOptions& options) {
@@ -144,11 +145,10 @@ void check_parts(const TriangleSurface& surface, const IsosurfaceParts& parts) {
 
 namespace picture {
 
-Colour colour_of(const DrawingOptions& options, const std::vector<std::string>& materials, std::size_t number,
-                 Colour (*otherwise)(std::size_t)) {
-  const auto found =
-      number < materials.size() ? options.colours.find(materials[number]) : options.colours.end();
-  if (found == options.colours.end()) return otherwise(number);
+Colour colour_of(const std::map<std::string, std::array<double, 3>>& colours, const std::string& name,
+                 std::size_t number, Colour (*otherwise)(std::size_t)) {
+  const auto found = colours.find(name);
+  if (found == colours.end()) return otherwise(number);
   const auto& [red, green, blue] = found->second;
   return {red, green, blue};
 }
@@ -164,7 +164,7 @@ InterfacePicture interface_picture(const InterfaceTriangles& interfaces, const D
   std::vector<char> seen(interfaces.materials.size(), 0);
   std::vector<Colour> colours;
   for (std::size_t m = 0; m < seen.size(); ++m)
-    colours.push_back(colour_of(options, interfaces.materials, m));
+    colours.push_back(colour_of(options.colours, interfaces.materials[m], m));
   for (std::size_t t = 0; t < interfaces.triangles.size(); ++t) {
     const auto [front, back] = interfaces.sides[t];
     for (const std::uint32_t m : {front, back}) {

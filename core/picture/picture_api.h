@@ -1,8 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <map>
 #include <string>
-#include <vector>
 
 #include "adamas/picture.h"
 #include "core/picture/interface_picture.h"
@@ -10,9 +11,9 @@
 
 namespace adamas::picture {
 
-/// The colour of a material: that of the options, or one by its number. `otherwise`: what gives that one.
-Colour colour_of(const DrawingOptions& options, const std::vector<std::string>& materials, std::size_t number,
-                 Colour (*otherwise)(std::size_t) = material_colour);
+/// The colour of a material: that under its name, or one by its number. `otherwise`: what gives that one.
+Colour colour_of(const std::map<std::string, std::array<double, 3>>& colours, const std::string& name,
+                 std::size_t number, Colour (*otherwise)(std::size_t) = material_colour);
 
 /// The picture of the interfaces that options select, with a legend unless there are very many materials.
 /// Throws Error as write_picture does for what cannot be drawn.

@@ -44,17 +44,15 @@ MeshFieldSource::~MeshFieldSource() = default;
 
 MeshFieldSource::MeshFieldSource(const MeshData& data,
                                  const std::function<MaterialId(const Vec3&)>& material_at)
-    : data_(data), subdivision_(data.mesh), cache_(std::make_unique<FittedValues>()) {
+    : data_(data),
+      subdivision_(data.mesh),
+      locator_(subdivision_),
+      cache_(std::make_unique<FittedValues>()) {
   const PolyhedralMesh& mesh = data.mesh;
-  std::vector<Box3> boxes(mesh.cell_count());
   Box3 centers;
-  for (std::size_t c = 0; c < boxes.size(); ++c) {
-    for (const Index p : mesh.points_of_cell(c)) boxes[c].extend(mesh.points()[p]);
-    centers.extend(mesh.cell_center(c));
-  }
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) centers.extend(mesh.cell_center(c));
   for (int axis = 0; axis < 3; ++axis)
     extends_[static_cast<std::size_t>(axis)] = centers.size()[axis] > 1e-9 * mesh.box().diagonal();
-  cell_boxes_ = BoxTree(boxes);
   for (const MeshField& field : data.fields) {
     fields_.push_back({field.name, field.unit, field.components, row_size_, 0, 0});
     row_size_ += static_cast<std::size_t>(field.components);
@@ -275,33 +273,9 @@ void MeshFieldSource::point_values(std::size_t field, MaterialId material, Index
   });
 }
 
-MeshFieldSource::Location MeshFieldSource::locate(const Vec3& p) const {
-  std::vector<std::uint32_t> cells;
-  double radius = 0;
-  const double diagonal = data_.mesh.box().diagonal();
-  for (double next = 1e-9 * diagonal; cells.empty(); radius = next, next *= 4)
-    cell_boxes_.near(p, radius, cells);
-  Location best{{}, {}, 0};
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Index cell : cells) {
-    subdivision_.for_each_tetrahedron(cell, [&](const std::array<Index, 4>& corners) {
-      std::array<Vec3, 4> x;
-      for (std::size_t i = 0; i < 4; ++i) x[i] = subdivision_.position(corners[i]);
-      const double volume = signed_volume(x[0], x[1], x[2], x[3]);
-      if (volume == 0) return;
-      const std::array<double, 4> w{
-          signed_volume(p, x[1], x[2], x[3]) / volume, signed_volume(x[0], p, x[2], x[3]) / volume,
-          signed_volume(x[0], x[1], p, x[3]) / volume, signed_volume(x[0], x[1], x[2], p) / volume};
-      const double least = *std::ranges::min_element(w);
-      if (least > most) best = {corners, w, cell}, most = least;
-    });
-  }
-  return best;
-}
-
 void MeshFieldSource::values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,
                                            std::span<Vec3> gradients) const {
-  const Location at = locate(p);
+  const MeshLocator::Location at = locator_.locate(p);
   std::array<Vec3, 4> x, slopes;
   for (std::size_t i = 0; i < 4; ++i) x[i] = subdivision_.position(at.corners[i]);
   const double volume = 6 * signed_volume(x[0], x[1], x[2], x[3]);
@@ -333,7 +307,7 @@ void MeshFieldSource::values(MaterialId material, const Vec3& p, std::span<doubl
 
 void MeshFieldSource::fitted_values(MaterialId material, const Vec3& p, const Vec3& near,
                                     std::span<double> row) const {
-  const Index cell = locate(near).cell;
+  const Index cell = locator_.locate(near).cell;
   const double size = std::cbrt(std::abs(data_.mesh.cell_volume(cell)));
   const int least = static_cast<int>(std::min<double>(norm(p - near) / size, kReach));
   for (std::size_t f = 0; f < fields_.size(); ++f) {

@@ -9,7 +9,7 @@
 #include "core/data/mesh_data.h"
 #include "interfaces/fields/field_source.h"
 #include "interfaces/mesh_reconstruction/mesh_subdivision.h"
-#include "interfaces/network/box_tree.h"
+#include "interfaces/mesh_reconstruction/mesh_locator.h"
 
 namespace adamas::interfaces {
 
@@ -42,12 +42,6 @@ class MeshFieldSource final : public FieldSource {
  private:
   using Index = MeshSubdivision::Index;
   struct Sample;
-  /// The tetrahedron that holds a place, and the weights of its corners.
-  struct Location {
-    std::array<Index, 4> corners;
-    std::array<double, 4> weights;
-    Index cell;
-  };
 
   /// Elements are numbered with cells first, then points.
   [[nodiscard]] bool is_cell(std::size_t site) const { return site < data_.mesh.cell_count(); }
@@ -61,7 +55,6 @@ class MeshFieldSource final : public FieldSource {
   void find_owners(const std::function<MaterialId(const Vec3&)>& material_at);
   void find_stated_fields();
   void find_ranges();
-  [[nodiscard]] Location locate(const Vec3& p) const;
   void point_values(std::size_t field, MaterialId material, Index point, std::span<double> out) const;
   void collect(std::size_t field, MaterialId material, Index cell, int least, Sample& sample) const;
   [[nodiscard]] bool add_sites(std::size_t field, MaterialId material, std::span<const Index> cells,
@@ -69,7 +62,7 @@ class MeshFieldSource final : public FieldSource {
 
   const MeshData& data_;
   MeshSubdivision subdivision_;
-  BoxTree cell_boxes_;
+  MeshLocator locator_;
   std::vector<FieldInfo> fields_;
   std::size_t row_size_ = 0;
   std::vector<std::uint16_t> owner_;        ///< by site

@@ -26,13 +26,13 @@ void add_outside(const MeshData& data, ResamplingSource& source) {
 }
 
 /// Makes the network of interfaces; if there are none, of the one material that fills the box.
-std::shared_ptr<const InterfaceNetwork> make_network(const InterfaceMesh& mesh,
+std::shared_ptr<const InterfaceNetwork> make_network(InterfaceMesh&& mesh, Bodies&& bodies,
                                                      const ResamplingSource& source) {
-  if (!mesh.triangles.empty()) return std::make_shared<InterfaceNetwork>(mesh, source.box);
-  Bodies bodies;
-  const auto most = std::ranges::max_element(source.volumes) - source.volumes.begin();
-  bodies.materials.push_back(MaterialId(static_cast<std::size_t>(most)));
-  return std::make_shared<InterfaceNetwork>(InterfaceMesh(mesh), source.box, bodies);
+  if (mesh.triangles.empty()) {
+    const auto most = std::ranges::max_element(source.volumes) - source.volumes.begin();
+    bodies.materials.assign(1, MaterialId(static_cast<std::size_t>(most)));
+  }
+  return std::make_shared<InterfaceNetwork>(std::move(mesh), source.box, std::move(bodies));
 }
 
 }  // namespace
@@ -53,7 +53,8 @@ ResamplingSource make_cells_source(const MeshData& data, MeshReconstruction&& re
   if (!data.mesh.fills_box()) add_outside(data, source);
   source.voxel = data.mesh.typical_size();
   if (data.labels.empty()) source.findings = std::move(reconstruction.agreement.findings);
-  const std::shared_ptr<const InterfaceNetwork> network = make_network(reconstruction.mesh, source);
+  const std::shared_ptr<const InterfaceNetwork> network = 
+      make_network(std::move(reconstruction.mesh), std::move(reconstruction.bodies), source);
   source.network = network;
   if (!network->triangles().empty()) {
     // What is dispersed is in other materials' bodies.

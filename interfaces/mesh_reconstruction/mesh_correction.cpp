@@ -1,7 +1,6 @@
 #include "interfaces/mesh_reconstruction/mesh_correction.h"
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,16 +9,20 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/disjoint_sets.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "interfaces/mesh_reconstruction/mesh_dispersed.h"
 #include "interfaces/mesh_reconstruction/mesh_errors.h"
 #include "interfaces/mesh_reconstruction/mesh_fit.h"
+#include "interfaces/mesh_reconstruction/mesh_flakes.h"
+#include "interfaces/mesh_reconstruction/mesh_held_cells.h"
+#include "interfaces/mesh_reconstruction/mesh_interfaces.h"
 #include "interfaces/mesh_reconstruction/mesh_start.h"
+#include "interfaces/mesh_reconstruction/mesh_totals.h"
 #include "interfaces/mesh_reconstruction/mesh_volumes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/region_parts.h"  // drop_unused_points
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
@@ -38,9 +41,6 @@ constexpr double kLeastGrowth = 0.5;
 /// Cells whose volumes differ from the fractions by more are named: for sharp ones, and for blurred ones,
 /// where neither the width nor the shape of a step is known so well.
 constexpr double kTolerance = 1e-3, kToleranceBlurred = 0.03;
-/// Totals are closed up to this part of the domain, in at most so many rounds.
-constexpr double kTotalTolerance = 2e-11;
-constexpr int kMostClosings = 30;
 /// Steps that seem less wide, in sizes of cells, may be sharp; they are if values of sharp ones differ from
 /// the fractions by no more than kFits in the mean.
 constexpr double kSurelyBlurred = 0.7, kFits = 0.0015;
@@ -50,6 +50,8 @@ constexpr double kDiffusionStep = 0.4;
 constexpr double kMostDiffusions = 64;
 /// Centres of cells are taken to be at least this far apart, in sizes of cells.
 constexpr double kLeastDistance = 1e-6;
+/// A cell that shows nothing of a material is a hole if more than this part of it should, blurred alike.
+constexpr double kHole = 0.25;
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// Smooths parts of cells as a Gaussian does, by diffusion between neighbours. At the boundary parts are
@@ -173,25 +175,26 @@ class Diffusion {
 class Correction {
  public:
   /// `dispersed`: the volumes that were taken out, by material of the data.
-  Correction(const MeshData& data, MeshValues& values, MeshWalls walls, Steps steps,
+  Correction(const MeshData& data, MeshValues& values, MeshWalls walls, MeshFilms films, Steps steps,
              std::vector<double> dispersed, Progress& progress)
       : data_(data),
         values_(values),
         walls_(std::move(walls)),
+        films_(std::move(films)),
         progress_(progress),
         volumes_(values),
         found_(std::move(steps.widths)),
         extents_(std::move(steps.extents)) {
-    agreement_.volumes = volumes_without(dispersed);
-    agreement_.findings.dispersed = std::move(dispersed);
+    result_.agreement.volumes = volumes_without(dispersed);
+    result_.agreement.findings.dispersed = std::move(dispersed);
   }
 
   /// `known`: whether the widths are known to be right. `error`: the standard deviation of errors of
   /// fractions, where that is known.
-  MeshAgreement run(bool known, const std::optional<double>& error) {
+  MeshReconstruction run(bool known, const std::optional<double>& error) {
     const double widest = found_.empty() ? 0 : *std::ranges::max_element(found_);
     // Curved interfaces of sharp materials look blurred to coarse cells; they fit all fractions.
-    const bool unsure = widest < kSurelyBlurred && !known;
+    const bool unsure = widest > 0 && widest < kSurelyBlurred && !known;
     const std::vector<double> sharp(found_.size(), 0.0);
     start(unsure ? sharp : found_);
     double deviation = error ? *error : deviation_of_errors();
@@ -205,16 +208,16 @@ class Correction {
     }
     if (deviation > SiteValues::kLeastError) smooth(deviation);
     correct();
-    if (unsure && deviation_ == 0 && agreement_.cells.mean_difference > kFits) {
+    if (unsure && deviation_ == 0 && result_.agreement.cells.mean_difference > kFits) {
       start(found_);
       correct();
     }
-    agreement_.findings.fraction_error = error.value_or(deviation_);
-    if (values_.active_cells().empty()) return agreement_;
-    close_totals();
-    measure(false);
+    result_.agreement.findings.fraction_error = error.value_or(deviation_);
+    const std::vector<VolumeMove> moves = extract();
+    if (values_.active_cells().empty()) return std::move(result_);
+    measure(false, moves);
     find_lost();
-    return agreement_;
+    return std::move(result_);
   }
 
  private:
@@ -224,11 +227,16 @@ class Correction {
     if (std::ranges::all_of(dispersed, [](double volume) { return volume == 0; })) return volumes;
     for (MaterialId m(0); m.value < volumes.size(); ++m.value) volumes[m] -= dispersed[m.value];
     for (std::size_t c = 0; c < data_.mesh.cell_count(); ++c) {
-      for (const Entry& entry : std::as_const(values_).at(c)) {
+      const double volume = data_.mesh.cell_volume(c);
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      for (const Entry& entry : own) {
         if (entry.fraction <= 0) continue;
         const MaterialId m = values_.material(entry.material);
-        volumes[m] += data_.mesh.cell_volume(c) *
-                      (static_cast<double>(entry.fraction) - static_cast<double>(data_.fraction(m, c)));
+        volumes[m] += volume * static_cast<double>(entry.fraction);
+        const bool counted = std::any_of(own.data(), &entry, [&](const Entry& other) {
+          return other.fraction > 0 && values_.material(other.material) == m;
+        });
+        if (!counted) volumes[m] -= volume * static_cast<double>(data_.fraction(m, c));
       }
     }
     return volumes;
@@ -237,13 +245,13 @@ class Correction {
   /// Sets the values from which those of steps of these widths are corrected.
   void start(const std::vector<double>& widths) {
     widths_ = widths;
-    set_start_values(data_, widths, extents_, walls_, values_);
+    set_start_values(widths, extents_, films_, walls_, values_);
     find_blur();
-    errors_.emplace(widths_, extents_, values_);
+    errors_.emplace(widths_, extents_, films_, values_);
   }
 
   [[nodiscard]] double deviation_of_errors() const {
-    return errors_->deviation(agreement_.findings.blur_median);
+    return errors_->deviation(result_.agreement.findings.blur_median);
   }
 
   /// Smooths values and fractions within the errors of the fractions.
@@ -282,40 +290,56 @@ class Correction {
     for (int round = 0; round <= kRoundsBlurred; ++round) {
       progress_.step("correcting volumes", static_cast<double>(round) / kRoundsBlurred);
       measure(true);
-      if (agreement_.cells.mean_difference >= before) {
+      if (result_.agreement.cells.mean_difference >= before) {
         restore(best);
         return measure(false);
       }
       if (round == kRoundsBlurred) return;
-      before = agreement_.cells.mean_difference;
+      before = result_.agreement.cells.mean_difference;
       best = kept();
       move();
     }
   }
 
-  /// Measures parts of cells and, if they are to be compared, those that blurred fractions show, and how far
-  /// they are from the fractions.
-  void measure(bool growth, bool compared = true) {
+  /// Measures parts of cells, those that blurred fractions show, and how far they are from the fractions
+  /// after these moves.
+  void measure(bool growth, const std::vector<VolumeMove>& moves = {}) {
     values_.interpolate();
     volumes_.measure(growth);
     const std::vector<Index>& active = values_.active_cells();
     shown_.clear();
     for (std::size_t n = 0; n < active.size(); ++n)
       shown_.insert(shown_.end(), volumes_.parts(n).begin(), volumes_.parts(n).end());
-    if (diffusion_ && compared) diffusion_->run(shown_);
-    if (!compared) return;
-    CellAgreement& found = agreement_.cells;
+    if (diffusion_) diffusion_->run(shown_);
+    std::map<std::pair<Index, MaterialId>, double> gained;
+    for (const auto& [cell, from, to, part] : moves) {
+      gained[{cell, from}] -= part;
+      gained[{cell, to}] += part;
+    }
+    CellAgreement& found = result_.agreement.cells;
     found = {.tolerance = std::max(diffusion_ ? kToleranceBlurred : kTolerance, 3 * deviation_)};
     double sum = 0;
-    std::size_t at = 0;
+    std::size_t first = 0;
+    std::vector<double> differences;
     for (const Index c : active) {
-      double off = 0;
+      const std::span<const Entry> own = std::as_const(values_).at(c);
+      differences.assign(own.size(), 0);
       bool is_mixed = false;
-      for (const Entry& entry : std::as_const(values_).at(c)) {
-        const float given = given_.empty() ? entry.fraction : given_[at];
-        off = std::max(off, std::abs(shown_[at++] - static_cast<double>(given)));
-        is_mixed = is_mixed || (entry.fraction > 0 && entry.fraction < 1);
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        const float given = given_.empty() ? own[e].fraction : given_[first + e];
+        double shown = shown_[first + e];
+        if (own[e].fraction > 0 && own[e].fraction < 1) is_mixed = true;
+        // Regions of a material count together.
+        const std::size_t row = first_of_material(values_, own, own[e].material);
+        if (row == e && !gained.empty()) {
+          const auto gain = gained.find({c, values_.material(own[e].material)});
+          if (gain != gained.end()) shown += gain->second;
+        }
+        differences[row] += shown - static_cast<double>(given);
       }
+      first += own.size();
+      double off = 0;
+      for (const double difference : differences) off = std::max(off, std::abs(difference));
       if (!is_mixed) {
         found.full_cells_off += off > kTolerance ? 1 : 0;
         found.greatest_in_full_cell = std::max(found.greatest_in_full_cell, off);
@@ -327,15 +351,15 @@ class Correction {
       found.cells_off += off > found.tolerance ? 1 : 0;
     }
     found.mean_difference = found.mixed_cells > 0 ? sum / static_cast<double>(found.mixed_cells) : 0;
-    agreement_.findings.mixed_cells = found.mixed_cells;
-    agreement_.findings.cells_off = found.cells_off;
-    agreement_.findings.tolerance = found.tolerance;
-    agreement_.findings.greatest_difference = found.greatest_difference;
+    result_.agreement.findings.mixed_cells = found.mixed_cells;
+    result_.agreement.findings.cells_off = found.cells_off;
+    result_.agreement.findings.tolerance = found.tolerance;
+    result_.agreement.findings.greatest_difference = found.greatest_difference;
   }
 
   /// Sets the findings about widths of steps in mixed cells.
   void find_blur() {
-    FractionFindings& findings = agreement_.findings;
+    FractionFindings& findings = result_.agreement.findings;
     findings = {.dispersed = std::move(findings.dispersed)};
     std::vector<double> of_cells;
     std::size_t mixed = 0;
@@ -448,135 +472,81 @@ class Correction {
     }
   }
 
-  /// Finds the groups of cells that share points and hold a material of which no part is shown there.
-  void find_lost() {
-    struct Group {
-      LostPlace place;
-      bool shown = false;
+  /// Extracts interfaces without flakes. Returns what cells of the flakes' neighbours get.
+  std::vector<VolumeMove> extract() {
+    const auto find = [&] { return find_flakes(data_, values_, result_.mesh, result_.bodies); };
+    const auto close = [&](const IdVector<MaterialId, double>& wanted) {
+      IdVector<MaterialId, double> volumes =
+          close_totals(data_, wanted, values_, volumes_, progress_);
+      result_.mesh = interfaces_of_values(data_, values_, progress_);
+      result_.bodies = find_bodies(result_.mesh, &data_.mesh.box());
+      return volumes;
     };
-    const PolyhedralMesh& mesh = data_.mesh;
-    const std::vector<Index>& active = values_.active_cells();
-    std::vector<std::uint32_t> firsts{0}, place(mesh.cell_count(), kNone);
-    for (std::uint32_t n = 0; n < active.size(); ++n) {
-      place[active[n]] = n;
-      firsts.push_back(firsts.back() + static_cast<std::uint32_t>(values_.at(active[n]).size()));
-    }
-    const auto holds = [](const Entry& entry) { return entry.fraction > kFractionTrace; };
-    DisjointSets sets(firsts.back());
-    std::vector<std::uint32_t> first_of_material(values_.material_count(), kNone);
-    for (std::size_t p = 0; p < mesh.points().size(); ++p) {
-      for (const bool joins : {true, false}) {
-        for (const Index c : mesh.cells_round(p)) {
-          if (place[c] == kNone) continue;
-          const std::span<const Entry> own = std::as_const(values_).at(c);
-          for (std::uint32_t e = 0; e < own.size(); ++e) {
-            if (!holds(own[e])) continue;
-            std::uint32_t& first = first_of_material[own[e].material];
-            const std::uint32_t here = firsts[place[c]] + e;
-            if (!joins) {
-              first = kNone;
-            } else if (first == kNone) {
-              first = here;
-            } else {
-              sets.join(first, here);
-            }
-          }
-        }
-      }
-    }
-    const std::vector<std::uint32_t> roots = std::move(sets).roots();
-    std::map<std::uint32_t, Group> groups;
-    for (std::uint32_t n = 0; n < active.size(); ++n) {
-      const std::span<const Entry> own = std::as_const(values_).at(active[n]);
-      for (std::uint32_t e = 0; e < own.size(); ++e) {
-        if (!holds(own[e])) continue;
-        Group& group = groups[roots[firsts[n] + e]];
-        const auto fraction = static_cast<double>(own[e].fraction);
-        const double volume = fraction * mesh.cell_volume(active[n]);
-        group.shown = group.shown || volumes_.parts(n)[e] > 0;
-        group.place.material = values_.material(own[e].material).value;
-        group.place.volume += volume;
-        ++group.place.cells;
-        group.place.greatest_fraction = std::max(group.place.greatest_fraction, fraction);
-        group.place.place += volume * mesh.cell_center(active[n]);
-      }
-    }
-    for (auto& [root, group] : groups) {
-      if (group.shown || !(group.place.volume > 0)) continue;
-      group.place.place *= 1 / group.place.volume;
-      group.place.within_one_step = group.place.greatest_fraction <= data_.report.step;
-      agreement_.lost.push_back(group.place);
-    }
+    const IdVector<MaterialId, double>& wanted = result_.agreement.volumes;
+    IdVector<MaterialId, double> given = close(wanted);
+    double domain = 0;
+    for (const double volume : given) domain += volume;
+    const std::vector<Flake> flakes = settle_flakes(wanted, domain, find, close, given);
+    drop_flakes(flakes, result_.mesh, result_.bodies.sides, result_.bodies.materials);
+    drop_unused_points(result_.mesh);
+    std::vector<VolumeMove> moves;
+    for (const Flake& flake : flakes) moves.push_back(flake.move);
+    return moves;
   }
 
-  /// Moves all values of each material by one offset until it has its volume.
-  void close_totals() {
-    const std::size_t count = values_.material_count();
-    const IdVector<MaterialId, double>& wanted = agreement_.volumes;
-    const PolyhedralMesh& mesh = data_.mesh;
-    const std::vector<Index>& active = values_.active_cells();
-    double domain = 0;
-    for (std::size_t c = 0; c < mesh.cell_count(); ++c) domain += mesh.cell_volume(c);
-    std::vector<char> is_active(mesh.cell_count(), 0);
-    for (const Index c : active) is_active[c] = 1;
-    std::vector<double> sole(count, 0);
-    for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-      if (is_active[c] == 0) sole[values_.sole(c)] += mesh.cell_volume(c);
+  /// Finds the groups of cells that hold a material of which no part is shown there, and such holes in what
+  /// others show.
+  void find_lost() {
+    const MeshHeldCells held(values_);
+    for (std::uint32_t group = 0; group < held.group_count(); ++group) {
+      const auto is_shown = [&](const MeshHeldCells::Place& place) { return part(place) > 0; };
+      if (std::ranges::none_of(held.places(group), is_shown)) add_lost(held.places(group));
     }
-    for (int round = 0; round < kMostClosings; ++round) {
-      progress_.step("closing volumes", static_cast<double>(round) / kMostClosings);
-      measure(true, false);
-      std::vector<double> owned = sole;
-      std::map<std::pair<std::uint16_t, std::uint16_t>, double> exchanged;
-      for (std::size_t n = 0; n < active.size(); ++n) {
-        const double volume = mesh.cell_volume(active[n]);
-        const std::span<const Entry> own = std::as_const(values_).at(active[n]);
-        for (std::size_t e = 0; e < own.size(); ++e) owned[own[e].material] += volume * volumes_.parts(n)[e];
-        for (const auto& exchange : volumes_.exchanges(n))
-          exchanged[{exchange.first, exchange.second}] += volume * exchange.growth;
-      }
-      // The unknowns are the offsets of materials that have interfaces.
-      std::vector<int> unknown(count, -1);
-      for (const auto& [pair, by] : exchanged) unknown[pair.first] = unknown[pair.second] = 0;
-      int size = 0;
-      for (int& of_one : unknown) of_one = of_one == 0 ? size++ : -1;
-      double most_missing = 0;
-      Eigen::VectorXd missing(size);
-      for (std::size_t m = 0; m < count; ++m) {
-        const double own = wanted[values_.material(static_cast<std::uint16_t>(m))] - owned[m];
-        most_missing = std::max(most_missing, std::abs(own));
-        if (unknown[m] >= 0) missing[unknown[m]] = own;
-      }
-      if (most_missing <= kTotalTolerance * domain || size == 0) return;
-      missing.array() -= missing.mean();
-      std::vector<Eigen::Triplet<double>> triplets;
-      double greatest = 0;
-      for (const auto& [pair, by] : exchanged) {
-        const int a = unknown[pair.first], b = unknown[pair.second];
-        triplets.emplace_back(a, a, by), triplets.emplace_back(b, b, by);
-        triplets.emplace_back(a, b, -by), triplets.emplace_back(b, a, -by);
-        greatest = std::max(greatest, by);
-      }
-      if (!(greatest > 0)) return;
-      for (int m = 0; m < size; ++m) triplets.emplace_back(m, m, 1e-9 * greatest);
-      Eigen::SparseMatrix<double> growth(size, size);
-      growth.setFromTriplets(triplets.begin(), triplets.end());
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth);
-      Eigen::VectorXd offsets = solver.solve(missing);
-      offsets.array() -= offsets.mean();
-      for (const Index c : active) {
-        const double most = kMostMove * values_.size(c);
-        for (Entry& entry : values_.at(c)) {
-          if (unknown[entry.material] >= 0)
-            entry.value += std::clamp(offsets[unknown[entry.material]], -most, most);
-        }
-      }
+    std::vector<std::size_t> firsts{0};
+    for (const Index c : values_.active_cells())
+      firsts.push_back(firsts.back() + std::as_const(values_).at(c).size());
+    const MeshHeldCells holes(values_, [&](const MeshHeldCells::Place& place) {
+      const Entry& entry = this->entry(place);
+      if (values_.is_part(entry.material) || part(place) > 0) return false;
+      return static_cast<double>(entry.fraction) > shown_[firsts[place.n] + place.entry] + kHole;
+    });
+    for (std::uint32_t group = 0; group < holes.group_count(); ++group) {
+      // What is lost as a whole is known.
+      const MeshHeldCells::Place first = holes.places(group)[0];
+      const std::uint32_t of_first = held.group(values_.active_cells()[first.n], entry(first).material);
+      if (std::ranges::any_of(held.places(of_first), [&](const auto& place) { return part(place) > 0; }))
+        add_lost(holes.places(group));
     }
+  }
+  [[nodiscard]] const Entry& entry(const MeshHeldCells::Place& place) const {
+    return std::as_const(values_).at(values_.active_cells()[place.n])[place.entry];
+  }
+  [[nodiscard]] double part(const MeshHeldCells::Place& place) const {
+    return volumes_.parts(place.n)[place.entry];
+  }
+
+  void add_lost(std::span<const MeshHeldCells::Place> places) {
+    LostPlace lost;
+    for (const MeshHeldCells::Place& place : places) {
+      const Index cell = values_.active_cells()[place.n];
+      const auto fraction = static_cast<double>(entry(place).fraction);
+      const double volume = fraction * data_.mesh.cell_volume(cell);
+      lost.material = values_.material(entry(place).material).value;
+      lost.volume += volume;
+      ++lost.cells;
+      lost.greatest_fraction = std::max(lost.greatest_fraction, fraction);
+      lost.place += volume * data_.mesh.cell_center(cell);
+    }
+    if (!(lost.volume > 0)) return;
+    lost.place *= 1 / lost.volume;
+    lost.within_one_step = lost.greatest_fraction <= data_.report.step;
+    result_.agreement.lost.push_back(lost);
   }
 
   const MeshData& data_;
   MeshValues& values_;
   MeshWalls walls_;
+  MeshFilms films_;
   Progress& progress_;
   MeshVolumes volumes_;
   std::vector<double> found_, extents_;  // widths and extents (Steps)
@@ -587,7 +557,7 @@ class Correction {
   double deviation_ = 0;       // of errors of fractions, if they were smoothed
   std::vector<float> given_;   // by entry of active cells: fractions before they were smoothed
   std::vector<double> shown_;  // by entry of active cells
-  MeshAgreement agreement_;
+  MeshReconstruction result_;
 };
 
 /// Makes materials sharp that have at most half of every cell, as a thin film: blurred, they would own
@@ -614,25 +584,27 @@ void set_faint_sharp(const MeshValues& values, std::vector<double>& widths) {
 
 }  // namespace
 
-MeshAgreement correct_values(const MeshData& data, const FractionOptions& options, MeshValues& values,
-                             Progress& progress) {
+MeshReconstruction reconstruct_fractions(const MeshData& data, const FractionOptions& options,
+                                         MeshValues& values, Progress& progress) {
   MeshWalls walls;
-  Steps steps = find_steps(data, walls, values);
+  MeshFilms films;
+  Steps steps = find_steps(walls, films, values);
   std::vector<double> dispersed(data.materials.size(), 0);
   if (!options.keep_dispersed) dispersed = take_dispersed(steps.widths, values);
-  if (std::ranges::any_of(dispersed, [](double volume) { return volume > 0; }))
-    steps = find_steps(data, walls, values);
+  films = MeshFilms(values);
+  if (films.any() || std::ranges::any_of(dispersed, [](double volume) { return volume > 0; }))
+    steps = find_steps(walls, films, values);
   set_faint_sharp(values, steps.widths);
   const auto is_blurred = [](double width) { return width >= kSurelyBlurred; };
   if (std::ranges::any_of(steps.widths, is_blurred)) walls = MeshWalls(values);
   if (walls.any()) {
-    steps = find_steps(data, walls, values);
+    steps = find_steps(walls, films, values);
     set_faint_sharp(values, steps.widths);
   }
   const std::optional<double> known = options.known_blur();
   if (known)
     steps.widths.assign(steps.widths.size(), *known > 0 ? std::sqrt(*known * *known + kCellVariance) : 0);
-  return Correction(data, values, std::move(walls), std::move(steps), std::move(dispersed), progress)
+  return Correction(data, values, std::move(walls), std::move(films), std::move(steps), std::move(dispersed), progress)
       .run(known.has_value(), options.known_error());
 }
 

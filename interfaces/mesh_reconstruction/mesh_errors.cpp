@@ -51,9 +51,10 @@ struct MeshErrors::Prediction {
 };
 
 MeshErrors::MeshErrors(const std::vector<double>& widths, const std::vector<double>& extents,
-                       const MeshValues& values)
+                       const MeshFilms& films, const MeshValues& values)
     : widths_(widths),
       extents_(extents),
+      films_(films),
       values_(values),
       firsts_{0},
       of_cells_(values.subdivision().mesh().cell_count(), kNone),
@@ -148,8 +149,8 @@ MeshErrors::Prediction MeshErrors::predict(std::size_t n, std::size_t e,
   Eigen::Matrix3d real = Eigen::Matrix3d::Zero(), across = Eigen::Matrix3d::Zero();
   const PolyhedralMesh& mesh = values_.subdivision().mesh();
   for (const Place& place : places) {
-    if (place.n == n) continue;
     const Index other = values_.active_cells()[place.n];
+    if (place.n == n || films_.holds(other)) continue;
     const std::span<const Entry> there = values_.at(other);
     const auto found = std::ranges::find(there, entry.material, &Entry::material);
     if (found == there.end() || !is_mixed(*found)) continue;
@@ -209,11 +210,16 @@ double MeshErrors::part_behind(Index cell, const Vec3& towards, double distance)
   return volume > 0 ? std::clamp(part / volume, 0.0, 1.0) : 0.5;
 }
 
+/// Returns whether a cell is mixed, by other materials than films.
+bool MeshErrors::is_examined(Index cell) const {
+  return !films_.holds(cell) && std::ranges::any_of(values_.at(cell), is_mixed);
+}
+
 double MeshErrors::deviation(double width) const {
   std::vector<std::uint32_t> mixed;
   const std::vector<Index>& active = values_.active_cells();
   for (std::uint32_t n = 0; n < active.size(); ++n) {
-    if (std::ranges::any_of(values_.at(active[n]), is_mixed)) mixed.push_back(n);
+    if (is_examined(active[n])) mixed.push_back(n);
   }
   const std::size_t stride = ErrorCriterion::stride(mixed.size());
   std::vector<ErrorCriterion::Sample> samples((mixed.size() + stride - 1) / stride);
@@ -242,7 +248,7 @@ void MeshErrors::smooth(double deviation, MeshValues& values) const {
   std::vector<std::vector<std::uint32_t>> near(active.size());
   parallel_for(active.size(), 32, [&](std::size_t n) {
     const std::span<const Entry> own = values_.at(active[n]);
-    if (std::ranges::none_of(own, is_mixed)) return;
+    if (!is_examined(active[n])) return;
     thread_local std::vector<Place> places;
     find_places(n, places);
     for (std::size_t e = 0; e < own.size(); ++e) {

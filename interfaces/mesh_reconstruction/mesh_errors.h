@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "interfaces/mesh_reconstruction/mesh_films.h"
 #include "interfaces/mesh_reconstruction/mesh_values.h"
 
 namespace adamas::interfaces {
@@ -11,8 +12,10 @@ namespace adamas::interfaces {
 /// Errors of fractions): the quadrics are those through the neighbours of cells in a mesh.
 class MeshErrors {
  public:
-  /// `widths`, `extents`: of steps (Steps). All arguments must outlive this object.
-  MeshErrors(const std::vector<double>& widths, const std::vector<double>& extents, const MeshValues& values);
+  /// `widths`, `extents`: of steps (Steps). Cells of films count as without errors: no surface alone predicts
+  /// their fractions. All arguments must outlive this object.
+  MeshErrors(const std::vector<double>& widths, const std::vector<double>& extents, const MeshFilms& films,
+             const MeshValues& values);
 
   /// Returns the standard deviation of errors, estimated; 0 where too few cells can be predicted. `width`:
   /// the median width of steps.
@@ -39,7 +42,10 @@ class MeshErrors {
   [[nodiscard]] double width_of(std::size_t n, std::size_t e) const;
   [[nodiscard]] bool has_no_third(std::size_t n, std::size_t other) const;
 
+  [[nodiscard]] bool is_examined(Index cell) const;
+
   const std::vector<double>&widths_, &extents_;
+  const MeshFilms& films_;
   const MeshValues& values_;
   std::vector<std::size_t> firsts_;      // by active cell: its first entry
   std::vector<std::uint32_t> of_cells_;  // by cell: its number among active ones, or kNone

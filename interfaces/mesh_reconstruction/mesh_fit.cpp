@@ -7,6 +7,7 @@
 
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/volume_system.h"
 
@@ -87,7 +88,8 @@ class Fit {
     for (std::size_t n = 0; n < values_.active_cells().size(); ++n) {
       const std::span<Entry> own = values_.at(values_.active_cells()[n]);
       for (std::size_t e = 0; e < own.size(); ++e) {
-        if (!(own[e].fraction > kMuch) || volumes_.parts(n)[e] > 0) continue;
+        // How much of it the regions of a material have in a cell of a film is not known so well.
+        if (!(own[e].fraction > kMuch) || volumes_.parts(n)[e] > 0 || values_.is_part(own[e].material)) continue;
         own[e].value += std::min(static_cast<double>(own[e].fraction) / kLeastGrowth, kMostRaise) *
                         extents_[first_rows_[n] + e];
         any = true;
@@ -131,11 +133,7 @@ class Fit {
     system_.blocks.resize((active.size() + kBlock - 1) / kBlock);
     parallel_chunks(active.size(), kBlock, [&](std::size_t begin, std::size_t end) {
       VolumeSystem::Block& block = system_.blocks[begin / kBlock];
-      block.exchanges.clear();
-      block.coefficients.clear();
-      block.first_row = first_rows_[begin];
-      block.last_row = first_rows_[end];
-      block.cells_off = 0;
+      block.clear(first_rows_[begin], first_rows_[end]);
       for (std::size_t n = begin; n < end; ++n) {
         block.cells_off += set_missing(n) > kCellOff ? 1 : 0;
         for (const MeshVolumes::Exchange& exchange : volumes_.exchanges(n)) add_exchange(n, exchange, block);
@@ -143,52 +141,62 @@ class Fit {
     });
   }
 
-  /// Sets the missing volumes of an active cell; returns the greatest.
+  /// Sets the missing volumes of an active cell; returns the greatest. Regions of a material have one together,
+  /// that of the first one.
   double set_missing(std::size_t n) {
-    double most = 0;
     const std::span<const Entry> own = std::as_const(values_).at(values_.active_cells()[n]);
-    for (std::size_t e = 0; e < own.size(); ++e) {
-      double& missing = system_.missing[first_rows_[n] + e];
-      missing = static_cast<double>(own[e].fraction) - volumes_.parts(n)[e];
-      most = std::max(most, std::abs(missing));
-    }
+    const std::span<double> missing = std::span(system_.missing).subspan(first_rows_[n], own.size());
+    std::ranges::fill(missing, 0);
+    for (std::size_t e = 0; e < own.size(); ++e)
+      missing[first_of_material(values_, own, own[e].material)] +=
+          static_cast<double>(own[e].fraction) - volumes_.parts(n)[e];
+    double most = 0;
+    for (const double each : missing) most = std::max(most, std::abs(each));
     return most;
   }
 
   void add_exchange(std::size_t n, const MeshVolumes::Exchange& exchange, VolumeSystem::Block& block) const {
     const Index cell = values_.active_cells()[n];
     const std::uint32_t gains = row(cell, exchange.first), loses = row(cell, exchange.second);
-    if (gains == kNone || loses == kNone) return;
-    thread_local std::vector<std::pair<std::uint32_t, double>> found;
-    found.clear();
+    if (gains == kNone || loses == kNone || gains == loses) return;
+    // The sums, by unknown, are all 0 before and after.
+    thread_local std::vector<double> sums;
+    thread_local std::vector<std::uint32_t> touched;
+    if (sums.size() < first_rows_.back()) sums.resize(first_rows_.back(), 0);
+    touched.clear();
     const auto add = [&](Index point, std::uint16_t material, double growth) {
       values_.for_each_source(point, material, [&](Index source, double weight) {
-        if (const std::uint32_t unknown = row(source, material); unknown != kNone)
-          found.emplace_back(unknown, weight * growth);
+        const std::uint32_t unknown = this->unknown(source, material);
+        if (unknown == kNone) return;
+        if (sums[unknown] == 0) touched.push_back(unknown);
+        sums[unknown] += weight * growth;
       });
     };
     for (const auto& [point, growth] : exchange.of_points) {
       add(point, exchange.first, growth);
       add(point, exchange.second, -growth);
     }
-    std::ranges::sort(found);
+    sort_unique(touched);
     const auto first = static_cast<std::uint32_t>(block.coefficients.size());
-    for (auto next = found.begin(); next != found.end();) {
-      const std::uint32_t unknown = next->first;
-      double sum = 0;
-      for (; next != found.end() && next->first == unknown; ++next) sum += next->second;
-      block.coefficients.push_back({unknown, static_cast<float>(sum)});
-    }
+    for (const std::uint32_t unknown : touched)
+      block.coefficients.push_back({unknown, static_cast<float>(std::exchange(sums[unknown], 0))});
     block.exchanges.push_back(
         {gains, loses, first, static_cast<std::uint32_t>(block.coefficients.size()) - first});
   }
 
-  /// Returns the number of a material's entry among those of active cells, which is that of its row and of
-  /// its unknown; kNone if it has none.
-  [[nodiscard]] std::uint32_t row(Index cell, std::uint16_t material) const {
+  /// Returns the row of a material in a cell, by one of its numbers: the number of its first entry among those
+  /// of active cells; kNone if it has none.
+  [[nodiscard]] std::uint32_t row(Index cell, std::uint16_t number) const {
     if (rows_of_cells_[cell] == kNone) return kNone;
     const std::span<const Entry> own = std::as_const(values_).at(cell);
-    const auto found = std::ranges::find(own, material, &Entry::material);
+    const std::size_t found = first_of_material(values_, own, number);
+    return found == own.size() ? kNone : rows_of_cells_[cell] + static_cast<std::uint32_t>(found);
+  }
+  /// Returns the unknown of a number in a cell, that of its entry; kNone if it has none.
+  [[nodiscard]] std::uint32_t unknown(Index cell, std::uint16_t number) const {
+    if (rows_of_cells_[cell] == kNone) return kNone;
+    const std::span<const Entry> own = std::as_const(values_).at(cell);
+    const auto found = std::ranges::find(own, number, &Entry::material);
     return found == own.end() ? kNone
                               : rows_of_cells_[cell] + static_cast<std::uint32_t>(found - own.begin());
   }

@@ -41,8 +41,12 @@ struct CellPlane {
 
 class Start {
  public:
-  Start(const MeshData& data, const MeshWalls& walls, MeshValues& values)
-      : values_(values), mesh_(data.mesh), subdivision_(values.subdivision()), walls_(walls) {}
+  Start(const MeshWalls& walls, const MeshFilms& films, MeshValues& values)
+      : values_(values),
+        mesh_(values.subdivision().mesh()),
+        subdivision_(values.subdivision()),
+        walls_(walls),
+        films_(films) {}
 
   Steps steps() {
     find_gradients_of_fractions();
@@ -62,6 +66,7 @@ class Start {
       find_planes(widths);
       for (int layer = 0; layer < kLayers; ++layer) continue_planes(widths);
       set_values(widths, extents);
+      films_.set_values(values_);
       if (round == kNormalRounds) return;
       // The gradients of distances are better normals than those of fractions.
       find_gradients([this](Index cell, const Entry& entry) { return value(cell, entry.material); });
@@ -199,7 +204,8 @@ class Start {
       const Index c = values_.active_cells()[n];
       const std::span<const Entry> own = std::as_const(values_).at(c);
       for (std::size_t e = 0; e < own.size() && !gradients_[c].empty(); ++e) {
-        if (own[e].fraction >= kShown && own[e].fraction <= 1 - kShown)
+        // The steps of a film are those of both its sides.
+        if (own[e].fraction >= kShown && own[e].fraction <= 1 - kShown && !films_.holds(c))
           shown[own[e].material].push_back({c, e, extents[firsts[n] + e]});
       }
     }
@@ -364,7 +370,7 @@ class Start {
     }
     const double side = entry.fraction > 0 ? 1 : -1;
     if (const std::optional<CellPlane>& plane = planes_[c][place])
-      return side * std::max(side * plane->distance, inner_radius(c));
+      return side * std::max(side * plane->distance, inner_radius(mesh_, c));
     // Interfaces along faces of cells leave no mixed cell: they are halfway between centres.
     thread_local std::vector<Index> ring, wider;
     ring.assign(1, c);
@@ -384,36 +390,27 @@ class Start {
       const double d = distance(mesh_.cell_center(c), mesh_.cell_center(other));
       least = std::min(least, d - 0.5 * values_.size(other));
     }
-    return std::max(least, inner_radius(c));
-  }
-
-  /// Returns the least distance of a cell's centre from the planes of its faces.
-  [[nodiscard]] double inner_radius(Index c) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Index f : mesh_.faces_of_cell(c)) {
-      const Vec3 away = mesh_.face_center(f) - mesh_.cell_center(c);
-      least = std::min(least, std::abs(dot(normalized(mesh_.face_area(f)), away)));
-    }
-    return least;
+    return std::max(least, inner_radius(mesh_, c));
   }
 
   MeshValues& values_;
   const PolyhedralMesh& mesh_;
   const MeshSubdivision& subdivision_;
   const MeshWalls& walls_;
+  const MeshFilms& films_;
   std::vector<std::vector<Vec3>> gradients_;  // by cell and entry; empty for cells without mixed entries
   std::vector<std::vector<std::optional<CellPlane>>> planes_;  // in the same way
 };
 
 }  // namespace
 
-Steps find_steps(const MeshData& data, const MeshWalls& walls, MeshValues& values) {
-  return Start(data, walls, values).steps();
+Steps find_steps(const MeshWalls& walls, const MeshFilms& films, MeshValues& values) {
+  return Start(walls, films, values).steps();
 }
 
-void set_start_values(const MeshData& data, const std::vector<double>& widths,
-                      const std::vector<double>& extents, MeshWalls& walls, MeshValues& values) {
-  Start(data, walls, values).run(widths, extents);
+void set_start_values(const std::vector<double>& widths, const std::vector<double>& extents,
+                      const MeshFilms& films, MeshWalls& walls, MeshValues& values) {
+  Start(walls, films, values).run(widths, extents);
   walls.keep_distances(values);
   if (std::ranges::any_of(widths, [](double width) { return width > 0; })) walls.set_values(values);
 }

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/data/mesh_data.h"
+#include "interfaces/mesh_reconstruction/mesh_films.h"
 #include "interfaces/mesh_reconstruction/mesh_values.h"
 #include "interfaces/mesh_reconstruction/mesh_walls.h"
 
@@ -17,14 +17,15 @@ struct Steps {
   /// cell where there is no gradient.
   std::vector<double> extents;
 };
-/// Cells that walls fill do not count.
-Steps find_steps(const MeshData& data, const MeshWalls& walls, MeshValues& values);
+/// Cells that walls fill do not count, and films are no steps.
+Steps find_steps(const MeshWalls& walls, const MeshFilms& films, MeshValues& values);
 
 /// Sets the values from which correction starts. Values of sharp materials, whose width in `widths` is 0, are
 /// distances from the planes that cut off the fractions of mixed cells, and their continuation beside these;
 /// those of blurred ones are the width times the normal quantile of the fraction.
 /// Where materials are blurred, those of walls and in them are set as MeshWalls does.
-void set_start_values(const MeshData& data, const std::vector<double>& widths,
-                      const std::vector<double>& extents, MeshWalls& walls, MeshValues& values);
+/// In and beside films, values are those of their layers.
+void set_start_values(const std::vector<double>& widths, const std::vector<double>& extents,
+                      const MeshFilms& films, MeshWalls& walls, MeshValues& values);
 
 }  // namespace adamas::interfaces

@@ -25,7 +25,8 @@ void unite(std::vector<std::uint16_t>& list, std::span<const std::uint16_t> othe
 }  // namespace
 
 MeshValues::MeshValues(const MeshData& data, const MeshSubdivision& subdivision)
-    : subdivision_(subdivision), by_name_(materials_by_name(data.materials)) {
+    : subdivision_(subdivision), by_name_(materials_by_name(data.materials)), is_part_(by_name_.size(), 0) {
+  for (std::uint16_t n = 0; n < by_name_.size(); ++n) wholes_.push_back(n);
   std::vector<std::vector<Held>> held(data.mesh.cell_count());
   for (std::uint16_t n = 0; n < by_name_.size(); ++n) {
     for (std::size_t c = 0; c < held.size(); ++c) {
@@ -44,6 +45,26 @@ void MeshValues::drop_absent() {
     }
   }
   find_entries(held);
+}
+
+void MeshValues::divide(const std::vector<MaterialId>& added,
+                        const std::vector<std::vector<std::pair<std::uint16_t, float>>>& held) {
+  for (const MaterialId material : added) {
+    const auto whole = static_cast<std::uint16_t>(std::ranges::find(by_name_, material) - by_name_.begin());
+    by_name_.push_back(material);
+    wholes_.push_back(whole);
+    is_part_.push_back(1);
+    is_part_[whole] = 1;
+  }
+  std::vector<std::vector<Held>> sorted(held.size());
+  for (std::size_t c = 0; c < held.size(); ++c) {
+    for (const auto& [number, fraction] : held[c]) {
+      const auto known = std::ranges::find(sorted[c], number, &Held::material);
+      known == sorted[c].end() ? sorted[c].push_back({number, fraction}) : void(known->fraction += fraction);
+    }
+    std::ranges::sort(sorted[c], {}, &Held::material);
+  }
+  find_entries(sorted);
 }
 
 /// `held`: what each cell holds, ascending by number.

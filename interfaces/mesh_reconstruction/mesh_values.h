@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/data/mesh_data.h"
@@ -35,9 +36,20 @@ class MeshValues {
   /// Finds the entries again, after fractions have become 0. Values are not kept.
   void drop_absent();
 
+  /// Finds the entries again, after regions of materials got numbers of their own: those after the present
+  /// ones, of these materials. `held`: by cell, numbers with the fractions that it holds. Values are not kept.
+  void divide(const std::vector<MaterialId>& added,
+              const std::vector<std::vector<std::pair<std::uint16_t, float>>>& held);
+
   [[nodiscard]] const MeshSubdivision& subdivision() const { return subdivision_; }
+  /// The material with a number; several numbers are regions of one material after divide().
   [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
+  /// The number of numbers.
   [[nodiscard]] std::size_t material_count() const { return by_name_.size(); }
+  /// The first number of a material, one of whose numbers this is.
+  [[nodiscard]] std::uint16_t whole(std::uint16_t number) const { return wholes_[number]; }
+  /// Whether a number is that of one of several regions of its material.
+  [[nodiscard]] bool is_part(std::uint16_t number) const { return is_part_[number] != 0; }
   [[nodiscard]] std::span<Entry> at(std::size_t cell) {
     return std::span(entries_).subspan(first_entries_[cell], first_entries_[cell + 1] - first_entries_[cell]);
   }
@@ -92,7 +104,9 @@ class MeshValues {
   [[nodiscard]] static std::uint16_t greatest(const Entries& entries);
 
   const MeshSubdivision& subdivision_;
-  std::vector<MaterialId> by_name_;
+  std::vector<MaterialId> by_name_;    ///< by number
+  std::vector<std::uint16_t> wholes_;  ///< in the same way
+  std::vector<char> is_part_;          ///< in the same way
   std::vector<std::uint32_t> first_entries_;
   std::vector<Entry> entries_;
   std::vector<Index> active_;
@@ -106,5 +120,15 @@ class MeshValues {
   std::vector<std::uint16_t> owners_;          ///< of these points
   std::vector<std::uint32_t> place_of_point_;  ///< by point: its place in points_, or kNone
 };
+
+/// Returns the place, among a cell's entries, of the first one of the material one of whose numbers is given;
+/// their count if there is none.
+inline std::size_t first_of_material(const MeshValues& values, std::span<const MeshValues::Entry> entries,
+                                     std::uint16_t number) {
+  const auto found = std::ranges::find_if(entries, [&](const MeshValues::Entry& entry) {
+    return values.whole(entry.material) == values.whole(number);
+  });
+  return static_cast<std::size_t>(found - entries.begin());
+}
 
 }  // namespace adamas::interfaces

@@ -12,29 +12,14 @@
 #include "core/data/contact_mesh.h"
 #include "core/geometry/ownership_problem.h"
 #include "interfaces/reconstruction/cut_volumes.h"
-#include "interfaces/reconstruction/flakes.h"
 #include "interfaces/reconstruction/fraction_area.h"
-#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/grid_flakes.h"
 #include "interfaces/reconstruction/total_closing.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas::interfaces {
 
 namespace {
-
-/// After flakes are given to neighbours, totals are closed again, at most kMostClosings times, until they are
-/// right up to kTotalTolerance of the domain.
-constexpr int kMostClosings = 3;
-constexpr double kTotalTolerance = 5e-10;
-
-/// Returns the greatest deviation of a difference of volumes from the mean of all differences.
-double greatest_difference(const IdVector<MaterialId, double>& a, const IdVector<MaterialId, double>& b) {
-  double mean = 0, greatest = 0;
-  for (MaterialId m(0); m.value < a.size(); ++m.value) mean += (a[m] - b[m]) / static_cast<double>(a.size());
-  for (MaterialId m(0); m.value < a.size(); ++m.value)
-    greatest = std::max(greatest, std::abs(a[m] - b[m] - mean));
-  return greatest;
-}
 
 double area_of(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& triangles) {
   double area = 0;
@@ -160,42 +145,28 @@ void Reconstruction::reconstruct(const MultiMaterialData& data, const SiteCells&
     findings_.area_of_fractions = interface_area_of_fractions(data, values, *lattice_);
 }
 
-/// Closes totals again until they are right with the flakes counted for their neighbours; returns the volumes
-/// that neighbours get.
+/// Gives flakes to their neighbours and closes totals with them; returns what cells of neighbours get.
 std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMaterialData& data,
                                                                   SiteValues& values, const SiteCells& cells,
                                                                   Progress& progress) {
-  const GridSites sites(data.grid);
-  std::vector<Flake> flakes;
-  std::vector<VolumeMove> moves;
-  for (int closings = 0;; ++closings) {
-    flakes = find_flakes(data, values, mesh_, bodies_, body_materials_);
-    moves.clear();
-    IdVector<MaterialId, double> wanted = volume_wanted_, given = volume_reconstructed_;
-    for (const Flake& flake : flakes) {
-      const MaterialId from = body_materials_[flake.body], to = body_materials_[flake.neighbour];
-      moves.push_back({flake.site, from, to, flake.volume / sites.cell(flake.site).volume()});
-      wanted[from] += flake.volume, given[from] -= flake.volume;
-      wanted[to] -= flake.volume, given[to] += flake.volume;
-    }
-    if ((closings == 0 && flakes.empty()) ||
-        greatest_difference(given, volume_wanted_) <= kTotalTolerance * data.grid.domain().volume()) {
-      volume_reconstructed_ = given;
-      break;
-    }
-    // If the flakes change with the offsets, they are left as they are.
-    const bool give_up = closings == kMostClosings;
-    if (give_up) flakes.clear(), moves.clear(), wanted = volume_wanted_;
+  const auto find = [&] { return find_flakes(data, values, mesh_, bodies_, body_materials_); };
+  const auto close = [&](const IdVector<MaterialId, double>& wanted) {
     close_totals(data, wanted, values, cells, progress);
     lattice_.emplace(data, values);
     extract(data, progress);
-    if (give_up) break;
-  }
-  if (flakes.empty()) return moves;
+    return volume_reconstructed_;
+  };
+  IdVector<MaterialId, double> given = volume_reconstructed_;
+  const std::vector<Flake> flakes =
+      settle_flakes(volume_wanted_, data.grid.domain().volume(), find, close, given);
+  volume_reconstructed_ = given;
+  if (flakes.empty()) return {};
   const IdVector<BodyId, BodyId> numbers = drop_flakes(flakes, mesh_, bodies_, body_materials_);
   for (BodyId& body : part_bodies_.of_part) body = numbers[body];
   for (auto& [part, body] : part_bodies_.of_inner_part) body = numbers[body];
   drop_unused_points(mesh_);
+  std::vector<VolumeMove> moves;
+  for (const Flake& flake : flakes) moves.push_back(flake.move);
   return moves;
 }
 

@@ -23,7 +23,7 @@ constexpr double kOfError = 3;
 CellAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
                                const SiteCells& cells, std::vector<VolumeMove> moves) {
   if (values.mixed_sites().empty()) return {};
-  std::ranges::stable_sort(moves, {}, &VolumeMove::site);
+  std::ranges::stable_sort(moves, {}, &VolumeMove::cell);
   BlurredFractions blurred(data, values, cells);
   blurred.predict();
   std::vector<float> differences(data.grid.site_count());
@@ -37,10 +37,10 @@ CellAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& 
         const std::size_t entry = values.index(own[e]);
         if (entry != first_entry(values, site, whole)) continue;
         double off = static_cast<double>(blurred.at(entry)) - given[e];
-        auto move = std::ranges::lower_bound(moves, site, {}, &VolumeMove::site);
-        for (; move != moves.end() && move->site == site; ++move) {
-          if (values.material(whole) == move->from) off -= move->volume;
-          if (values.material(whole) == move->to) off += move->volume;
+        auto move = std::ranges::lower_bound(moves, site, {}, &VolumeMove::cell);
+        for (; move != moves.end() && move->cell == site; ++move) {
+          if (values.material(whole) == move->from) off -= move->part;
+          if (values.material(whole) == move->to) off += move->part;
         }
         differences[site] = std::max(differences[site], static_cast<float>(std::abs(off)));
       }

@@ -1,21 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "adamas/reconstruct.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/flakes.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
-
-/// A part of a site's cell that goes from one material to another.
-struct VolumeMove {
-  std::uint32_t site;
-  MaterialId from, to;
-  double volume;  ///< relative to the cell's volume
-};
 
 /// Compares volumes with fractions, after the volumes `moves` are moved between materials. The result is
 /// empty if no cell is mixed.

@@ -321,11 +321,7 @@ class Correction {
                                  [&](std::uint32_t site) { return has_changed(site, 1); }))
         return;
       VolumeSystem::Block& block = system.blocks[begin / kBlock];
-      block.exchanges.clear();
-      block.coefficients.clear();
-      block.first_row = row_of_[begin];
-      block.last_row = row_of_[end];
-      block.cells_off = 0;
+      block.clear(row_of_[begin], row_of_[end]);
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
         cell.set_site(cells_to_correct_[n]);

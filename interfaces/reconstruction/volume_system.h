@@ -23,6 +23,12 @@ struct VolumeSystem {
     std::vector<Coefficient> coefficients;
     std::uint32_t first_row = 0, last_row = 0;  ///< the range of its cells' rows
     std::size_t cells_off = 0;
+
+    /// Empties the block for cells with these rows.
+    void clear(std::uint32_t first, std::uint32_t last) {
+      exchanges.clear(), coefficients.clear();
+      first_row = first, last_row = last, cells_off = 0;
+    }
   };
   std::vector<Block> blocks;
   std::vector<double> missing;  ///< missing volumes, by row, as parts of cells

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,18 +10,20 @@
 
 namespace adamas::test {
 
-/// Data on a mesh whose materials are "a" where f >= 0 and "b" elsewhere; fractions are those of points
-/// spread evenly over the tetrahedra of the cells, which is independent of how interfaces are reconstructed.
-inline MeshData sampled_data(const PolyhedralMesh& mesh, const std::function<double(const Vec3&)>& f,
-                             int per_edge = 6) {
+/// Data on a mesh with `count` materials "a", "b", ..., of which material_at(p) tells the number of that at a
+/// point. Fractions are those of points spread evenly over the tetrahedra of the cells, which is independent
+/// of how interfaces are reconstructed.
+inline MeshData sampled_materials(const PolyhedralMesh& mesh, std::size_t count,
+                                  const std::function<std::size_t(const Vec3&)>& material_at,
+                                  int per_edge = 6) {
   MeshData data;
   data.source = "scene";
   data.mesh = mesh;
-  data.materials.push_back("a");
-  data.materials.push_back("b");
-  std::vector<float> a, b;
+  std::vector<std::vector<float>> fractions(count);
+  std::vector<double> inside(count);
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    double inside = 0, all = 0;
+    std::ranges::fill(inside, 0);
+    double all = 0;
     for (const auto face : mesh.faces_of_cell(c)) {
       const auto points = mesh.face(face);
       for (std::size_t i = 0; i < points.size(); ++i) {
@@ -43,17 +46,29 @@ inline MeshData sampled_data(const PolyhedralMesh& mesh, const std::function<dou
           }
           const Vec3 p = (1 - s - t - u) * x[0] + s * x[1] + t * x[2] + u * x[3];
           all += volume;
-          if (f(p) >= 0) inside += volume;
+          inside[material_at(p)] += volume;
         }
       }
     }
-    a.push_back(static_cast<float>(inside / all));
-    b.push_back(1 - a.back());
+    float rest = 1;
+    for (std::size_t m = 0; m + 1 < count; ++m) {
+      fractions[m].push_back(static_cast<float>(inside[m] / all));
+      rest -= fractions[m].back();
+    }
+    fractions.back().push_back(std::max(rest, 0.0f));
   }
-  data.fractions.push_back(std::move(a));
-  data.fractions.push_back(std::move(b));
+  for (std::size_t m = 0; m < count; ++m) {
+    data.materials.push_back(std::string(1, static_cast<char>('a' + m)));
+    data.fractions.push_back(std::move(fractions[m]));
+  }
   data.normalise();
   return data;
+}
+
+/// Data on a mesh whose materials are "a" where f >= 0 and "b" elsewhere.
+inline MeshData sampled_data(const PolyhedralMesh& mesh, const std::function<double(const Vec3&)>& f,
+                             int per_edge = 6) {
+  return sampled_materials(mesh, 2, [&](const Vec3& p) -> std::size_t { return f(p) >= 0 ? 0 : 1; }, per_edge);
 }
 
 }  // namespace adamas::test

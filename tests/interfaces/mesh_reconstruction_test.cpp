@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 #include <set>
 
@@ -138,6 +139,28 @@ TEST(MeshReconstruction, ABallOnTetrahedraIsInOnePiece) {
   EXPECT_LT(found.agreement.cells.mean_difference, 3e-4);
 }
 
+/// Three regions that meet in a line, one of them reflex: each is one body, and the pieces that correction
+/// cuts off where they meet are none, as on grids.
+TEST(MeshReconstruction, FlakesOnTetrahedraAreNoBodies) {
+  constexpr std::uint32_t kCells = 5;
+  const Vec3 line = normalized(Vec3{0.3, 0.5, 1}), across = normalized(cross(line, {1, 0.2, 0.1})),
+             up = cross(line, across);
+  for (const Vec3& origin : {Vec3{0.52, 0.47, 0.51}, {0.44, 0.55, 0.49}}) {
+    const auto material_at = [&](const Vec3& p) -> std::size_t {
+      const double angle = std::atan2(dot(p - origin, up), dot(p - origin, across));
+      return angle < 0 || angle > 2 * M_PI / 3 ? 0 : angle < M_PI / 3 ? 1 : 2;
+    };
+    const MeshData data = test::sampled_materials(
+        test::to_tetrahedra(make_hexahedra(
+            {kCells, kCells, kCells}, [](const Vec3& p) { return jittered(p, 0.2 / kCells); })),
+        3, material_at, 3);
+    const MeshReconstruction found = reconstruct_mesh(data);
+    expect_volumes(data, found.mesh);
+    EXPECT_EQ(found.bodies.materials.size(), 3u);
+    EXPECT_EQ(bodies_of(found.mesh, data.mesh.box()), 3u);
+  }
+}
+
 TEST(MeshReconstruction, TheBoundaryOfWhatIsNoBoxIsAnInterface) {
   const auto ball = [](const Vec3& p) { return 0.4 - distance(p, {1.1, 1.0, 0.9}); };
   const MeshData data = sampled_data(tube(6), ball);
@@ -245,6 +268,41 @@ TEST(MeshReconstruction, AThinFilmIsKept) {
   expect_volumes(data, found.mesh);
   EXPECT_EQ(bodies_of(found.mesh, data.mesh.box(), MaterialId(0)), 1u);
   EXPECT_LT(found.agreement.cells.mean_difference, 0.01);
+}
+
+/// Films thinner than cells are whole on hexahedra and on tetrahedra, plane ones and closed shells, of any
+/// thickness: they separate what lies on their two sides, and their faces are where they should be.
+TEST(MeshReconstruction, FilmsAreWholeAndInTheirPlaces) {
+  constexpr std::uint32_t kCells = 5;
+  constexpr double kCell = 1.0 / kCells;
+  const test::Hexahedra hexahedra = make_hexahedra(
+      {kCells, kCells, kCells}, [](const Vec3& p) { return jittered(p, 0.2 * kCell); });
+  const Vec3 normal = normalized(Vec3{0.3, 1, 0.5}), center{0.51, 0.48, 0.5};
+  const auto off_plane = [&](const Vec3& p) { return dot(p - center, normal); };
+  const auto off_ball = [&](const Vec3& p) { return distance(p, center) - 0.36; };
+  const std::function<double(const Vec3&)> plane = off_plane, ball = off_ball;
+  struct Case {
+    const std::function<double(const Vec3&)>& off;
+    bool tetrahedra;
+    double thickness;  // in sides of the hexahedra
+    double most;       // the greatest distance, in these too
+  };
+  for (const auto& [off, tetrahedra, thickness, most] :
+       {Case{plane, true, 0.4, 0.2}, {ball, false, 0.7, 0.25}}) {
+    const double half = 0.5 * thickness * kCell;
+    const MeshData data = sampled_data(
+        tetrahedra ? test::to_tetrahedra(hexahedra) : to_mesh(hexahedra),
+        [&, off = off](const Vec3& p) { return half - std::abs(off(p)); }, 3);
+    const MeshReconstruction found = reconstruct_mesh(data);
+    expect_volumes(data, found.mesh);
+    EXPECT_EQ(found.bodies.materials.size(), 3u);
+    EXPECT_EQ(found.agreement.findings.blur_share, 0);
+    EXPECT_TRUE(found.agreement.lost.empty());
+    double farthest = 0;
+    for (const Vec3& p : found.mesh.points)
+      farthest = std::max(farthest, std::abs(std::abs(off(p)) - half));
+    EXPECT_LT(farthest, most * kCell) << thickness << (tetrahedra ? " tetrahedra" : " hexahedra");
+  }
 }
 
 /// A step that is blurred by a cell and a half, and the mould that it meets: each of its cells is full.

@@ -258,6 +258,22 @@ TEST(Hausdorff, BoundsAreTightenedFromLooseOnes) {
   }
 }
 
+/// What bounded all distances before still does, though less accuracy is asked for than they have.
+TEST(Hausdorff, BoundsAreNeverLoosened) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const Surface from(test::random_soup(seed, 60)), to(test::random_soup(seed + 50, 40));
+    HausdorffOptions options;
+    options.relative = 0.005;
+    options.each = true;
+    DistanceBound bound = directed_distance_bound({from.points, from.triangles}, to.tree, options);
+    const std::vector<double> before = bound.triangle_upper;
+    options.relative = 0.1;
+    bound.lower *= 0.5;
+    tighten_distance_bound({from.points, from.triangles}, to.tree, options, bound);
+    for (std::size_t t = 0; t < before.size(); ++t) EXPECT_LE(bound.triangle_upper[t], before[t]);
+  }
+}
+
 TEST(Hausdorff, IsTheSameOnAnyNumberOfThreads) {
   const Surface from(test::random_soup(1, 400)), to(test::random_soup(2, 300));
   set_thread_limit(1);

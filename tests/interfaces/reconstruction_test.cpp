@@ -2,7 +2,7 @@
 
 #include "core/geometry/tetrahedron.h"
 #include "datasets/random_numbers.h"
-#include "interfaces/reconstruction/flakes.h"
+#include "interfaces/reconstruction/grid_flakes.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"
@@ -209,7 +209,7 @@ TEST(Reconstruction, DropsAreNoFlakes) {
     if (alone) continue;
     EXPECT_EQ(flakes[0].body, BodyId(1));
     EXPECT_EQ(flakes[0].neighbour, BodyId(0));
-    EXPECT_EQ(flakes[0].site, middle);
+    EXPECT_EQ(flakes[0].move.cell, middle);
     EXPECT_NEAR(flakes[0].volume, 0.01 * h * h * h, 1e-15);
     InterfaceMesh rest = mesh;
     auto sides = bodies;

@@ -77,9 +77,8 @@ PictureBlock picture_block(const ResampledMesh& mesh, const DrawingOptions& opti
   for (int axis = 0; axis < 3; ++axis)
     block.counts[static_cast<std::size_t>(axis)] =
         std::max<std::size_t>(2, static_cast<std::size_t>(size[axis] / spacing) + 1);
-  const std::vector<std::string> names(mesh.materials.begin(), mesh.materials.end());
-  for (std::size_t m = 0; m < names.size(); ++m)
-    block.materials.push_back({names[m], colour_of(options, names, m)});
+  for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value)
+    block.materials.push_back({mesh.materials[m], colour_of(options.colours, mesh.materials[m], m.value)});
   const std::vector<PointSample> samples = probe(mesh, points_of(block));
   for (const PointSample& sample : samples)
     block.numbers.push_back(sample.inside() && sample.material < PictureBlock::kNothing

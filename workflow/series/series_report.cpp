@@ -12,7 +12,7 @@
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/output_stream.h"
-#include "core/picture/material_colours.h"
+#include "core/picture/picture_api.h"
 
 namespace adamas {
 
@@ -118,14 +118,6 @@ bool shows_anything(const PlotSeries& series) {
   return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
 }
 
-/// The colour of a material: that of the files, or else one by its number.
-Colour colour_of(const ResampledSeries& record, std::size_t material) {
-  const auto found = record.colours.find(record.steps.front().balance[material].material);
-  if (found == record.colours.end()) return material_colour(material);
-  const auto& [red, green, blue] = found->second;
-  return {red, green, blue};
-}
-
 /// Two lines for each material in its colour and with markers of its own: dashed and open what the input has,
 /// and filled what the mesh has; both as parts of the greatest that the input ever has, so that small
 /// materials are seen too.
@@ -139,11 +131,11 @@ Plot material_plot(const ResampledSeries& record, const std::string& label, doub
     double greatest = 0;
     for (const ResampledStep& step : record.steps) greatest = std::max(greatest, step.balance[m].*input);
     if (!(greatest > 0)) continue;
-    const auto relative = [&record, m, greatest](std::string name, double MaterialBalance::*value) {
+    const auto relative = [&record, &materials, m, greatest](std::string name, double MaterialBalance::*value) {
       PlotSeries series = series_of(record, std::move(name), [m, value, greatest](const ResampledStep& step) {
         return step.balance[m].*value / greatest;
       });
-      series.colour = colour_of(record, m);
+      series.colour = colour_of(record.colours, materials[m].material, m);
       series.marker = m;
       return series;
     };
