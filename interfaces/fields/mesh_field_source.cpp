@@ -44,10 +44,7 @@ MeshFieldSource::~MeshFieldSource() = default;
 
 MeshFieldSource::MeshFieldSource(const MeshData& data,
                                  const std::function<MaterialId(const Vec3&)>& material_at)
-    : data_(data),
-      subdivision_(data.mesh),
-      locator_(subdivision_),
-      cache_(std::make_unique<FittedValues>()) {
+    : data_(data), subdivision_(data.mesh), locator_(subdivision_), cache_(std::make_unique<FittedValues>()) {
   const PolyhedralMesh& mesh = data.mesh;
   Box3 centers;
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) centers.extend(mesh.cell_center(c));

@@ -8,8 +8,8 @@
 
 #include "core/data/mesh_data.h"
 #include "interfaces/fields/field_source.h"
-#include "interfaces/mesh_reconstruction/mesh_subdivision.h"
 #include "interfaces/mesh_reconstruction/mesh_locator.h"
+#include "interfaces/mesh_reconstruction/mesh_subdivision.h"
 
 namespace adamas::interfaces {
 

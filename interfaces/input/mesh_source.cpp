@@ -53,7 +53,7 @@ ResamplingSource make_cells_source(const MeshData& data, MeshReconstruction&& re
   if (!data.mesh.fills_box()) add_outside(data, source);
   source.voxel = data.mesh.typical_size();
   if (data.labels.empty()) source.findings = std::move(reconstruction.agreement.findings);
-  const std::shared_ptr<const InterfaceNetwork> network = 
+  const std::shared_ptr<const InterfaceNetwork> network =
       make_network(std::move(reconstruction.mesh), std::move(reconstruction.bodies), source);
   source.network = network;
   if (!network->triangles().empty()) {

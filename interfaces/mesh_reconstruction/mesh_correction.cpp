@@ -476,8 +476,7 @@ class Correction {
   std::vector<VolumeMove> extract() {
     const auto find = [&] { return find_flakes(data_, values_, result_.mesh, result_.bodies); };
     const auto close = [&](const IdVector<MaterialId, double>& wanted) {
-      IdVector<MaterialId, double> volumes =
-          close_totals(data_, wanted, values_, volumes_, progress_);
+      IdVector<MaterialId, double> volumes = close_totals(data_, wanted, values_, volumes_, progress_);
       result_.mesh = interfaces_of_values(data_, values_, progress_);
       result_.bodies = find_bodies(result_.mesh, &data_.mesh.box());
       return volumes;
@@ -604,7 +603,8 @@ MeshReconstruction reconstruct_fractions(const MeshData& data, const FractionOpt
   const std::optional<double> known = options.known_blur();
   if (known)
     steps.widths.assign(steps.widths.size(), *known > 0 ? std::sqrt(*known * *known + kCellVariance) : 0);
-  return Correction(data, values, std::move(walls), std::move(films), std::move(steps), std::move(dispersed), progress)
+  return Correction(data, values, std::move(walls), std::move(films), std::move(steps), std::move(dispersed),
+                    progress)
       .run(known.has_value(), options.known_error());
 }
 

@@ -25,7 +25,8 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr double kLeastThin = 0.9, kLeastFitted = 0.4;
 /// A film has at least so many cells.
 constexpr std::size_t kLeastCells = 12;
-/// Layers are continued to so many rings of cells: to as many as values of points depend on, and those beside.
+/// Layers are continued to so many rings of cells: to as many as values of points depend on, and those
+/// beside.
 constexpr int kRings = 3;
 /// Layers whose normals have a cosine below this belong to different parts of a film.
 constexpr double kAlike = 0.5;
@@ -56,11 +57,12 @@ class MeshFilms::Search {
       mark();
       find_regions();
       find_sides();
-      changed = std::erase_if(candidates_, [this](const Candidate& candidate) { return !separates(candidate); }) > 0;
+      changed = std::erase_if(candidates_,
+                              [this](const Candidate& candidate) { return !separates(candidate); }) > 0;
     }
     if (candidates_.empty()) return films_.in_film_.clear();
-    divide_materials();
     for (int ring = 0; ring < kRings; ++ring) continue_layers();
+    divide_materials();
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
       if (layer_of_[c] != kNone) films_.layers_.emplace_back(c, layers_[layer_of_[c]]);
     }
@@ -90,12 +92,14 @@ class MeshFilms::Search {
       std::vector<char> is_thin(found.cells.size());
       parallel_for(is_thin.size(), 64,
                    [&](std::size_t i) { is_thin[i] = has_others_round(found.cells[i], found.film) ? 1 : 0; });
-      if (static_cast<double>(std::ranges::count(is_thin, 1)) < kLeastThin * static_cast<double>(is_thin.size()))
+      if (static_cast<double>(std::ranges::count(is_thin, 1)) <
+          kLeastThin * static_cast<double>(is_thin.size()))
         continue;
       found.layers.resize(found.cells.size());
       parallel_for(found.layers.size(), 4,
                    [&](std::size_t i) { found.layers[i] = layer_at(found.cells[i], found.film); });
-      const auto fitted = std::ranges::count_if(found.layers, [](const auto& layer) { return layer.has_value(); });
+      const auto fitted =
+          std::ranges::count_if(found.layers, [](const auto& layer) { return layer.has_value(); });
       if (are_enough(static_cast<std::size_t>(fitted), found)) candidates_.push_back(std::move(found));
     }
   }
@@ -134,7 +138,8 @@ class MeshFilms::Search {
   [[nodiscard]] bool has_others_round(Index cell, std::uint16_t film) const {
     thread_local std::vector<Index> ring;
     subdivision_.find_ring(std::array{cell}, ring);
-    return std::ranges::any_of(ring, [&](Index c) { return fraction_of(values_, c, film) <= kFractionTrace; });
+    return std::ranges::any_of(ring,
+                               [&](Index c) { return fraction_of(values_, c, film) <= kFractionTrace; });
   }
 
   [[nodiscard]] std::optional<MeshLayer> layer_at(Index cell, std::uint16_t film) const {
@@ -365,8 +370,8 @@ class MeshFilms::Search {
   const PolyhedralMesh& mesh_;
   std::vector<Candidate> candidates_;
   std::vector<Layer> layers_;
-  std::vector<std::uint32_t> layer_of_;         // by cell, or kNone
-  std::vector<std::uint32_t> firsts_, regions_;  // by cell: its first entry; by entry
+  std::vector<std::uint32_t> layer_of_;             // by cell, or kNone
+  std::vector<std::uint32_t> firsts_, regions_;     // by cell: its first entry; by entry
   std::map<std::uint32_t, std::uint16_t> numbers_;  // by region beside a film
   std::set<std::uint16_t> with_region_;             // materials that have such a region
   std::vector<MaterialId> added_;
@@ -377,7 +382,9 @@ MeshFilms::MeshFilms(MeshValues& values) { Search(*this, values).run(); }
 
 void MeshFilms::set_values(MeshValues& values) const {
   const PolyhedralMesh& mesh = values.subdivision().mesh();
-  for (const auto& [cell, layer] : layers_) {
+  for (const auto& each : layers_) {
+    const Index cell = each.first;
+    const Layer& layer = each.second;
     double height = layer.layer.height({});
     const double half = 0.5 * layer.layer.thickness, size = values.size(cell);
     const std::span<Entry> own = values.at(cell);
@@ -385,13 +392,17 @@ void MeshFilms::set_values(MeshValues& values) const {
     if (in_film_[cell] == 0) {
       const auto most = std::ranges::max_element(own, {}, &Entry::fraction);
       const double least = half + inner_radius(mesh, cell);
-      if (most->material == layer.sides[0]) height = std::max(height, least);
-      else if (most->material == layer.sides[1]) height = std::min(height, -least);
-      else continue;
+      if (most->material == layer.sides[0])
+        height = std::max(height, least);
+      else if (most->material == layer.sides[1])
+        height = std::min(height, -least);
+      else
+        continue;
     }
     const double of_film = half - std::abs(height);
     const auto is_third = [&](const Entry& entry) {
-      return entry.material != layer.film && entry.material != layer.sides[0] && entry.material != layer.sides[1];
+      return entry.material != layer.film && entry.material != layer.sides[0] &&
+             entry.material != layer.sides[1];
     };
     // What ends at a third material is no farther from its boundary than that.
     double most = std::numeric_limits<double>::infinity();

@@ -89,7 +89,8 @@ class Fit {
       const std::span<Entry> own = values_.at(values_.active_cells()[n]);
       for (std::size_t e = 0; e < own.size(); ++e) {
         // How much of it the regions of a material have in a cell of a film is not known so well.
-        if (!(own[e].fraction > kMuch) || volumes_.parts(n)[e] > 0 || values_.is_part(own[e].material)) continue;
+        if (!(own[e].fraction > kMuch) || volumes_.parts(n)[e] > 0 || values_.is_part(own[e].material))
+          continue;
         own[e].value += std::min(static_cast<double>(own[e].fraction) / kLeastGrowth, kMostRaise) *
                         extents_[first_rows_[n] + e];
         any = true;
@@ -141,8 +142,8 @@ class Fit {
     });
   }
 
-  /// Sets the missing volumes of an active cell; returns the greatest. Regions of a material have one together,
-  /// that of the first one.
+  /// Sets the missing volumes of an active cell; returns the greatest. Regions of a material have one
+  /// together, that of the first one.
   double set_missing(std::size_t n) {
     const std::span<const Entry> own = std::as_const(values_).at(values_.active_cells()[n]);
     const std::span<double> missing = std::span(system_.missing).subspan(first_rows_[n], own.size());
@@ -184,8 +185,8 @@ class Fit {
         {gains, loses, first, static_cast<std::uint32_t>(block.coefficients.size()) - first});
   }
 
-  /// Returns the row of a material in a cell, by one of its numbers: the number of its first entry among those
-  /// of active cells; kNone if it has none.
+  /// Returns the row of a material in a cell, by one of its numbers: the number of its first entry among
+  /// those of active cells; kNone if it has none.
   [[nodiscard]] std::uint32_t row(Index cell, std::uint16_t number) const {
     if (rows_of_cells_[cell] == kNone) return kNone;
     const std::span<const Entry> own = std::as_const(values_).at(cell);

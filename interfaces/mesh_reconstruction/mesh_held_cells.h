@@ -10,8 +10,8 @@
 namespace adamas::interfaces {
 
 /// The connected groups of cells that hold more than kFractionTrace of a material, or of those of these that
-/// are chosen; cells are connected by points. Cells that a material fills, with no other material near, are in
-/// no group. Regions of a material belong together.
+/// are chosen; cells are connected by points. Cells that a material fills, with no other material near, are
+/// in no group. Regions of a material belong together.
 class MeshHeldCells {
  public:
   using Index = MeshSubdivision::Index;
@@ -23,7 +23,8 @@ class MeshHeldCells {
     std::uint32_t entry;  ///< among those of the cell
   };
 
-  /// Finds the groups. `chooses`: whether an entry counts; null if all do. The values must outlive this object.
+  /// Finds the groups. `chooses`: whether an entry counts; null if all do. The values must outlive this
+  /// object.
   explicit MeshHeldCells(const MeshValues& values, const std::function<bool(const Place&)>& chooses = {});
 
   /// The places of each group, ascending. Groups are in the order of their first places.

@@ -23,8 +23,8 @@ constexpr double kThickest = 1.6, kFarthest = 1.2;
 constexpr double kFlat = 0.7;
 /// The greatest root of the remaining sum of squares, in relation to that of the fractions.
 constexpr double kMostLeft = 0.15;
-/// A normal turns, a length changes, and a layer bends by at most this in a round; lengths are in sizes of the
-/// cell.
+/// A normal turns, a length changes, and a layer bends by at most this in a round; lengths are in sizes of
+/// the cell.
 constexpr double kMostTurn = 0.3, kMostChange = 0.5, kMostBend = 0.1;
 /// Bends are damped more than what is found first.
 constexpr double kDamping = 1e-3, kDampingOfBend = 1e-2;
@@ -97,13 +97,15 @@ class LayerFit {
     squares.diagonal().tail<3>().array() += kDampingOfBend * greatest;
     const Row move = squares.ldlt().solve(right);
     const auto limited = [](double x, double most) { return std::clamp(x, -most, most); };
-    layer.normal = normalized(layer.normal + limited(move[0], kMostTurn) * u + limited(move[1], kMostTurn) * v);
+    layer.normal =
+        normalized(layer.normal + limited(move[0], kMostTurn) * u + limited(move[1], kMostTurn) * v);
     layer.middle += size_ * limited(move[2], kMostChange);
     layer.thickness = std::clamp(layer.thickness + size_ * limited(move[3], kMostChange), 0.01 * size_,
                                  3 * kThickest * size_);
     const auto bend = [&](double by, const Vec3& a, const Vec3& b) {
       const double amount = limited(by, kMostBend) / size_;
-      layer.bend[0] += amount * a.x * b.x, layer.bend[1] += amount * a.y * b.y, layer.bend[2] += amount * a.z * b.z;
+      layer.bend[0] += amount * a.x * b.x, layer.bend[1] += amount * a.y * b.y,
+          layer.bend[2] += amount * a.z * b.z;
       layer.bend[3] += 0.5 * amount * (a.x * b.y + a.y * b.x);
       layer.bend[4] += 0.5 * amount * (a.x * b.z + a.z * b.x);
       layer.bend[5] += 0.5 * amount * (a.y * b.z + a.z * b.y);
@@ -111,8 +113,8 @@ class LayerFit {
     bend(move[4], u, u), bend(move[5], u, v), bend(move[6], v, v);
   }
 
-  /// Returns the part of a cell in a layer, and sets its derivatives by turns towards u and v, by lengths, and by
-  /// bends along u, both and v; all in sizes of the cell.
+  /// Returns the part of a cell in a layer, and sets its derivatives by turns towards u and v, by lengths,
+  /// and by bends along u, both and v; all in sizes of the cell.
   double part(Index cell, const MeshLayer& layer, const Vec3& u, const Vec3& v, Row& row) const {
     double inside = 0;
     subdivision_.for_each_tetrahedron(cell, [&](const std::array<Index, 4>& corners) {

@@ -20,7 +20,8 @@ constexpr int kMostRounds = 30;
 /// A value moves by at most this part of a cell's size in a round.
 constexpr double kMostMove = 0.2;
 
-/// What two materials exchange, by their first numbers, by derivatives with respect to the difference of their offsets.
+/// What two materials exchange, by their first numbers, by derivatives with respect to the difference of
+/// their offsets.
 using Exchanges = std::map<std::pair<std::uint16_t, std::uint16_t>, double>;
 
 /// Returns the offsets, by material, that give materials with interfaces the volumes that are missing, to
@@ -103,7 +104,8 @@ IdVector<MaterialId, double> close_totals(const MeshData& data, const IdVector<M
     if (offsets.empty()) return result;
     for (const Index c : active) {
       const double most = kMostMove * values.size(c);
-      for (Entry& entry : values.at(c)) entry.value += std::clamp(offsets[values.whole(entry.material)], -most, most);
+      for (Entry& entry : values.at(c))
+        entry.value += std::clamp(offsets[values.whole(entry.material)], -most, most);
     }
   }
 }

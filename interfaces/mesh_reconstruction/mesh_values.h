@@ -37,7 +37,8 @@ class MeshValues {
   void drop_absent();
 
   /// Finds the entries again, after regions of materials got numbers of their own: those after the present
-  /// ones, of these materials. `held`: by cell, numbers with the fractions that it holds. Values are not kept.
+  /// ones, of these materials. `held`: by cell, numbers with the fractions that it holds. Values are not
+  /// kept.
   void divide(const std::vector<MaterialId>& added,
               const std::vector<std::vector<std::pair<std::uint16_t, float>>>& held);
 

@@ -163,7 +163,8 @@ std::vector<Flake> find_flakes(const FlakeCells& cells, const InterfaceMesh& mes
 }
 
 std::vector<Flake> settle_flakes(
-    const IdVector<MaterialId, double>& wanted, double domain, const std::function<std::vector<Flake>()>& find,
+    const IdVector<MaterialId, double>& wanted, double domain,
+    const std::function<std::vector<Flake>()>& find,
     const std::function<IdVector<MaterialId, double>(const IdVector<MaterialId, double>&)>& close,
     IdVector<MaterialId, double>& given) {
   for (int closings = 0;; ++closings) {

@@ -58,7 +58,8 @@ std::vector<Flake> find_flakes(const FlakeCells& cells, const InterfaceMesh& mes
 /// find(): finds the flakes; close(volumes): closes totals to these volumes, makes interfaces again and
 /// returns the volumes that they enclose. On return `given` counts the flakes for their neighbours.
 std::vector<Flake> settle_flakes(
-    const IdVector<MaterialId, double>& wanted, double domain, const std::function<std::vector<Flake>()>& find,
+    const IdVector<MaterialId, double>& wanted, double domain,
+    const std::function<std::vector<Flake>()>& find,
     const std::function<IdVector<MaterialId, double>(const IdVector<MaterialId, double>&)>& close,
     IdVector<MaterialId, double>& given);
 

@@ -68,7 +68,8 @@ inline MeshData sampled_materials(const PolyhedralMesh& mesh, std::size_t count,
 /// Data on a mesh whose materials are "a" where f >= 0 and "b" elsewhere.
 inline MeshData sampled_data(const PolyhedralMesh& mesh, const std::function<double(const Vec3&)>& f,
                              int per_edge = 6) {
-  return sampled_materials(mesh, 2, [&](const Vec3& p) -> std::size_t { return f(p) >= 0 ? 0 : 1; }, per_edge);
+  return sampled_materials(
+      mesh, 2, [&](const Vec3& p) -> std::size_t { return f(p) >= 0 ? 0 : 1; }, per_edge);
 }
 
 }  // namespace adamas::test

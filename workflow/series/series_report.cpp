@@ -131,7 +131,8 @@ Plot material_plot(const ResampledSeries& record, const std::string& label, doub
     double greatest = 0;
     for (const ResampledStep& step : record.steps) greatest = std::max(greatest, step.balance[m].*input);
     if (!(greatest > 0)) continue;
-    const auto relative = [&record, &materials, m, greatest](std::string name, double MaterialBalance::*value) {
+    const auto relative = [&record, &materials, m, greatest](std::string name,
+                                                             double MaterialBalance::*value) {
       PlotSeries series = series_of(record, std::move(name), [m, value, greatest](const ResampledStep& step) {
         return step.balance[m].*value / greatest;
       });
