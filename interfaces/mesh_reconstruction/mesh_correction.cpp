@@ -501,9 +501,7 @@ class Correction {
       const auto is_shown = [&](const MeshHeldCells::Place& place) { return part(place) > 0; };
       if (std::ranges::none_of(held.places(group), is_shown)) add_lost(held.places(group));
     }
-    std::vector<std::size_t> firsts{0};
-    for (const Index c : values_.active_cells())
-      firsts.push_back(firsts.back() + std::as_const(values_).at(c).size());
+    const std::vector<std::uint32_t> firsts = first_active_entries(values_);
     const MeshHeldCells holes(values_, [&](const MeshHeldCells::Place& place) {
       const Entry& entry = this->entry(place);
       if (values_.is_part(entry.material) || part(place) > 0) return false;

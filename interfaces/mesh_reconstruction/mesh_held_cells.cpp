@@ -13,13 +13,12 @@ using Entry = MeshValues::Entry;
 }  // namespace
 
 MeshHeldCells::MeshHeldCells(const MeshValues& values, const std::function<bool(const Place&)>& chooses)
-    : values_(values), place_of_cell_(values.subdivision().mesh().cell_count(), kNone), firsts_{0} {
+    : values_(values),
+      place_of_cell_(values.subdivision().mesh().cell_count(), kNone),
+      firsts_(first_active_entries(values)) {
   const PolyhedralMesh& mesh = values.subdivision().mesh();
   const std::vector<Index>& active = values.active_cells();
-  for (std::uint32_t n = 0; n < active.size(); ++n) {
-    place_of_cell_[active[n]] = n;
-    firsts_.push_back(firsts_.back() + static_cast<std::uint32_t>(values.at(active[n]).size()));
-  }
+  for (std::uint32_t n = 0; n < active.size(); ++n) place_of_cell_[active[n]] = n;
   const auto holds = [&](const Place& place, const Entry& entry) {
     return entry.fraction > kFractionTrace && (!chooses || chooses(place));
   };

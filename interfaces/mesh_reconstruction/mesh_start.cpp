@@ -82,7 +82,7 @@ class Start {
 
   void set_values(const std::vector<double>& widths, const std::vector<double>& extents) {
     const std::vector<Index>& active = values_.active_cells();
-    const std::vector<std::size_t> firsts = first_entries();
+    const std::vector<std::uint32_t> firsts = first_active_entries(values_);
     std::vector<double> found(firsts.back());
     parallel_for(active.size(), 64, [&](std::size_t n) {
       const std::span<const Entry> own = std::as_const(values_).at(active[n]);
@@ -95,19 +95,11 @@ class Start {
     }
   }
 
-  /// The numbers of the first entries of active cells, and of all at the end.
-  [[nodiscard]] std::vector<std::size_t> first_entries() const {
-    std::vector<std::size_t> firsts{0};
-    for (const Index c : values_.active_cells())
-      firsts.push_back(firsts.back() + std::as_const(values_).at(c).size());
-    return firsts;
-  }
-
   /// The extents of cells along gradients, in the mean of the cells round them: blur is no property of single
   /// cells.
   [[nodiscard]] std::vector<double> find_extents() const {
     const std::vector<Index>& active = values_.active_cells();
-    const std::vector<std::size_t> firsts = first_entries();
+    const std::vector<std::uint32_t> firsts = first_active_entries(values_);
     std::vector<double> own_extents(firsts.back(), 0), extents(firsts.back());
     std::vector<std::uint32_t> place(mesh_.cell_count(), kNone);
     for (std::uint32_t n = 0; n < active.size(); ++n) place[active[n]] = n;
@@ -199,7 +191,7 @@ class Start {
       double extent;
     };
     std::vector<std::vector<Shown>> shown(values_.material_count());
-    const std::vector<std::size_t> firsts = first_entries();
+    const std::vector<std::uint32_t> firsts = first_active_entries(values_);
     for (std::size_t n = 0; n < values_.active_cells().size(); ++n) {
       const Index c = values_.active_cells()[n];
       const std::span<const Entry> own = std::as_const(values_).at(c);

@@ -60,7 +60,11 @@ void MeshValues::divide(const std::vector<MaterialId>& added,
   for (std::size_t c = 0; c < held.size(); ++c) {
     for (const auto& [number, fraction] : held[c]) {
       const auto known = std::ranges::find(sorted[c], number, &Held::material);
-      known == sorted[c].end() ? sorted[c].push_back({number, fraction}) : void(known->fraction += fraction);
+      if (known == sorted[c].end()) {
+        sorted[c].push_back({number, fraction});
+      } else {
+        known->fraction += fraction;
+      }
     }
     std::ranges::sort(sorted[c], {}, &Held::material);
   }
@@ -225,6 +229,13 @@ void MeshValues::find_materials(const std::array<Index, 4>& corners, std::vector
       add(at(corners[c] - place_of_point_.size()));
     }
   }
+}
+
+std::vector<std::uint32_t> first_active_entries(const MeshValues& values) {
+  std::vector<std::uint32_t> firsts{0};
+  for (const MeshValues::Index c : values.active_cells())
+    firsts.push_back(firsts.back() + static_cast<std::uint32_t>(values.at(c).size()));
+  return firsts;
 }
 
 }  // namespace adamas::interfaces

@@ -122,6 +122,10 @@ class MeshValues {
   std::vector<std::uint32_t> place_of_point_;  ///< by point: its place in points_, or kNone
 };
 
+/// Returns the number of each active cell's first entry among the entries of active cells, and the count of
+/// these at the end.
+std::vector<std::uint32_t> first_active_entries(const MeshValues& values);
+
 /// Returns the place, among a cell's entries, of the first one of the material one of whose numbers is given;
 /// their count if there is none.
 inline std::size_t first_of_material(const MeshValues& values, std::span<const MeshValues::Entry> entries,

@@ -613,20 +613,23 @@ void InterfaceComparison::tighten_in_both_parts(double seen, const Progress& pro
     const MaterialBoundaries& from = of_input ? input_ : shown_;
     std::vector<TriangleList> lists;
     std::vector<std::vector<std::uint32_t>> left(parts_.count);
-    std::vector<std::vector<double>> before(parts_.count);
+    std::vector<std::vector<double>> before(parts_.count);  // by place that is left
     for (std::size_t p = 0; p < parts_.count; ++p) {
       lists.emplace_back(from.tree(p));
-      before[p] = bound(p, of_input).triangle_upper;
-      for (std::uint32_t place = 0; place < before[p].size(); ++place) {
-        if (before[p][place] > options.accept) left[p].push_back(place);
+      const std::vector<double>& upper = bound(p, of_input).triangle_upper;
+      for (std::uint32_t place = 0; place < upper.size(); ++place) {
+        if (!(upper[place] > options.accept)) continue;
+        left[p].push_back(place);
+        before[p].push_back(upper[place]);
       }
     }
+    const std::vector<std::vector<std::uint32_t>> places = left;
     bound_in_both_parts(of_input, lists, left, options, progress);
     // Bounds from before hold too, and may be the tighter ones.
     for (std::size_t p = 0; p < parts_.count; ++p) {
       std::vector<double>& upper = bound(p, of_input).triangle_upper;
-      for (std::size_t place = 0; place < upper.size(); ++place)
-        upper[place] = std::min(upper[place], before[p][place]);
+      for (std::size_t i = 0; i < places[p].size(); ++i)
+        upper[places[p][i]] = std::min(upper[places[p][i]], before[p][i]);
     }
   }
 }
